@@ -1,0 +1,101 @@
+# Build rules of the lab: one function each to add a library of a layer, a culler family, a test and a
+# benchmark.
+
+option(VISLAB_TESTS "Build the tests" ON)
+option(VISLAB_WARNINGS_AS_ERRORS "Treat compiler warnings as errors" OFF)
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}")
+
+find_program(VISLAB_CCACHE ccache)
+if(VISLAB_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${VISLAB_CCACHE}")
+endif()
+
+# Contraction of a*b+c into one rounding changes ids between builds: results must not depend on it.
+add_library(vislab_options INTERFACE)
+target_compile_options(vislab_options INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -ffp-contract=off)
+if(VISLAB_WARNINGS_AS_ERRORS)
+  target_compile_options(vislab_options INTERFACE -Werror)
+endif()
+target_include_directories(vislab_options INTERFACE "${PROJECT_SOURCE_DIR}")
+
+# vislab_add_library(NAME SOURCES file... [PUBLIC library...] [PRIVATE library...])
+# A static library vislab_NAME with the lab's options; PUBLIC libraries appear in its headers.
+function(vislab_add_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(vislab_${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(vislab_${name} PUBLIC ${ARG_PUBLIC} PRIVATE vislab_options ${ARG_PRIVATE})
+  target_include_directories(vislab_${name} PUBLIC "${PROJECT_SOURCE_DIR}")
+endfunction()
+
+# vislab_add_culler_family(FAMILY CULLERS name... [SOURCES file...] [LIBRARIES library...])
+# Adds the culler FAMILY.name for each name; its file is name.cpp, which defines
+#   vislab::CullerEntry vislab::cullers::FAMILY_name();
+# A family whose only culler bears its own name (none, oracle) is called by that name alone.
+# SOURCES are files that several cullers of the family share.
+function(vislab_add_culler_family family)
+  cmake_parse_arguments(ARG "" "" "CULLERS;SOURCES;LIBRARIES" ${ARGN})
+  set(files ${ARG_SOURCES})
+  foreach(culler IN LISTS ARG_CULLERS)
+    list(APPEND files ${culler}.cpp)
+    if(culler STREQUAL family)
+      set_property(GLOBAL APPEND PROPERTY VISLAB_CULLERS ${culler})
+    else()
+      set_property(GLOBAL APPEND PROPERTY VISLAB_CULLERS ${family}_${culler})
+    endif()
+  endforeach()
+  vislab_add_library(${family} SOURCES ${files} PUBLIC vislab_culler PRIVATE ${ARG_LIBRARIES})
+  set_property(GLOBAL APPEND PROPERTY VISLAB_CULLER_LIBRARIES vislab_${family})
+endfunction()
+
+# vislab_write_registry(): the library vislab_cullers, whose register_all_cullers(Registry&) adds every
+# culler of every family. To be called after all families.
+function(vislab_write_registry)
+  get_property(cullers GLOBAL PROPERTY VISLAB_CULLERS)
+  get_property(libraries GLOBAL PROPERTY VISLAB_CULLER_LIBRARIES)
+  set(declarations "")
+  set(calls "")
+  foreach(culler IN LISTS cullers)
+    string(APPEND declarations "CullerEntry ${culler}();\n")
+    string(APPEND calls "  registry.add(cullers::${culler}());\n")
+  endforeach()
+  set(file "${CMAKE_CURRENT_BINARY_DIR}/all_cullers.cpp")
+  file(CONFIGURE OUTPUT "${file}" CONTENT
+"// Written by CMake from the vislab_add_culler_family calls.
+#include \"algorithms/all_cullers.h\"
+
+namespace vislab::cullers {
+@declarations@}  // namespace vislab::cullers
+
+namespace vislab {
+void register_all_cullers(Registry& registry) {
+@calls@}
+}  // namespace vislab
+" @ONLY)
+  vislab_add_library(cullers SOURCES "${file}" PUBLIC vislab_culler PRIVATE ${libraries})
+endfunction()
+
+# vislab_add_test(NAME SOURCES file... [LIBRARIES library...])
+# A GoogleTest program test_NAME whose cases ctest knows one by one.
+function(vislab_add_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  add_executable(test_${name} ${ARG_SOURCES})
+  target_link_libraries(test_${name} PRIVATE vislab_options ${ARG_LIBRARIES} GTest::gtest_main)
+  target_compile_definitions(test_${name} PRIVATE
+    VISLAB_SOURCE_DIR="${PROJECT_SOURCE_DIR}" VISLAB_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  gtest_discover_tests(test_${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60
+    WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}" PROPERTIES TIMEOUT 600)
+endfunction()
+
+# vislab_add_benchmark(FAMILY SOURCES file... [LIBRARIES library...])
+# A program bench_FAMILY, run by `./lab bench FAMILY`. Its main prints one JSON object a measurement
+# (experiments/bench/bench.h).
+function(vislab_add_benchmark family)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  add_executable(bench_${family} ${ARG_SOURCES})
+  target_link_libraries(bench_${family} PRIVATE vislab_options vislab_bench ${ARG_LIBRARIES})
+endfunction()

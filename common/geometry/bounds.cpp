@@ -1,0 +1,81 @@
+#include "common/geometry/bounds.h"
+
+#include <cmath>
+
+namespace vislab {
+namespace {
+
+float round_down(double value) {
+  const auto rounded = static_cast<float>(value);
+  return rounded > value ? std::nextafter(rounded, -std::numeric_limits<float>::infinity())
+                         : rounded;
+}
+
+float round_up(double value) {
+  const auto rounded = static_cast<float>(value);
+  return rounded < value ? std::nextafter(rounded, std::numeric_limits<float>::infinity())
+                         : rounded;
+}
+
+}  // namespace
+
+Plane plane_through(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  const glm::dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
+  return {normal, -glm::dot(normal, a)};
+}
+
+bool Aabb::valid() const {
+  const glm::vec3 extent = max - min;  // infinite or NaN if any bound is
+  return min.x <= max.x && min.y <= max.y && min.z <= max.z && std::isfinite(extent.x) &&
+         std::isfinite(extent.y) && std::isfinite(extent.z) && std::isfinite(min.x) &&
+         std::isfinite(min.y) && std::isfinite(min.z);
+}
+
+bool Aabb::contains(const glm::dvec3& p) const {
+  return p.x >= min.x && p.x <= max.x && p.y >= min.y && p.y <= max.y && p.z >= min.z &&
+         p.z <= max.z;
+}
+
+Aabb bounds_of(std::span<const glm::vec3> points) {
+  Aabb box;
+  for (const glm::vec3& p : points) box.extend(p);
+  return box;
+}
+
+Aabb transformed(const Aabb& box, const glm::dmat4x3& transform) {
+  if (box.empty()) return box;
+  Aabb result;
+  for (int row = 0; row < 3; ++row) {
+    double low = transform[3][row];
+    double high = low;
+    double magnitude = std::abs(low);
+    for (int column = 0; column < 3; ++column) {
+      const double a = transform[column][row] * box.min[column];
+      const double b = transform[column][row] * box.max[column];
+      low += std::min(a, b);
+      high += std::max(a, b);
+      magnitude += std::max(std::abs(a), std::abs(b));
+    }
+    // Three products and three sums in double: at most 6 roundings of the magnitude.
+    const double error = 6.0 * std::numeric_limits<double>::epsilon() * magnitude;
+    result.min[row] = round_down(low - error);
+    result.max[row] = round_up(high + error);
+  }
+  return result;
+}
+
+double distance_squared(const Aabb& box, const glm::dvec3& p) {
+  const glm::dvec3 gap = glm::max(glm::max(glm::dvec3(box.min) - p, p - glm::dvec3(box.max)), 0.0);
+  return glm::dot(gap, gap);
+}
+
+Sphere circumscribed(const Aabb& box) {
+  const glm::vec3 center(box.center());
+  // The float centre is off the double one: the radius is measured from the float centre.
+  const glm::dvec3 c(center);
+  const glm::dvec3 reach = glm::max(c - glm::dvec3(box.min), glm::dvec3(box.max) - c);
+  return {center,
+          round_up(glm::length(reach) * (1.0 + 4.0 * std::numeric_limits<double>::epsilon()))};
+}
+
+}  // namespace vislab

@@ -1,0 +1,66 @@
+// Planes, axis-aligned boxes and spheres. Planes are double; boxes and spheres are float and are
+// always rounded outward, so that what they enclose is enclosed in exact arithmetic too.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <glm/mat4x3.hpp>
+#include <limits>
+#include <span>
+
+namespace vislab {
+
+/// Half-space n.p + d >= 0 ("inside"), world frame. `normal` has unit length unless a function says
+/// otherwise.
+struct Plane {
+  glm::dvec3 normal{0.0, 0.0, 1.0};
+  double d = 0.0;
+
+  double signed_distance(const glm::dvec3& p) const { return glm::dot(normal, p) + d; }
+};
+
+/// Plane through three points; the inside is where they appear counter-clockwise. The points must
+/// not be collinear.
+Plane plane_through(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
+
+/// Axis-aligned box, metres. The default is empty (min > max), which contains nothing.
+struct Aabb {
+  glm::vec3 min{std::numeric_limits<float>::infinity()};
+  glm::vec3 max{-std::numeric_limits<float>::infinity()};
+
+  bool empty() const { return !(min.x <= max.x && min.y <= max.y && min.z <= max.z); }
+  /// All six numbers are finite and min <= max. A box that is not valid may never be culled.
+  bool valid() const;
+  glm::dvec3 center() const { return (glm::dvec3(min) + glm::dvec3(max)) * 0.5; }
+  glm::dvec3 half_size() const { return (glm::dvec3(max) - glm::dvec3(min)) * 0.5; }
+  void extend(const glm::vec3& p) {
+    min = glm::min(min, p);
+    max = glm::max(max, p);
+  }
+  void extend(const Aabb& box) {
+    min = glm::min(min, box.min);
+    max = glm::max(max, box.max);
+  }
+  bool contains(const glm::dvec3& p) const;
+
+  friend bool operator==(const Aabb&, const Aabb&) = default;
+};
+
+/// Box of a set of points; empty for no points.
+Aabb bounds_of(std::span<const glm::vec3> points);
+
+/// Smallest box around the eight corners of `box` after an affine transform (Arvo 1990), rounded
+/// outward. An empty box stays empty.
+Aabb transformed(const Aabb& box, const glm::dmat4x3& transform);
+
+/// Squared distance of a point from a box, metres squared; 0 inside.
+double distance_squared(const Aabb& box, const glm::dvec3& p);
+
+struct Sphere {
+  glm::vec3 center{0.0F};
+  float radius = 0.0F;
+};
+
+/// The sphere around the box's centre through its corners, radius rounded up.
+Sphere circumscribed(const Aabb& box);
+
+}  // namespace vislab

@@ -1,0 +1,52 @@
+// What a culler or the harness may ask of a graphics device: draw objects, ask how many samples a
+// box would add. One implementation draws with OSMesa; decorators may time or model it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "common/scene/frame.h"
+
+namespace vislab {
+
+using QueryId = std::uint32_t;
+
+class RenderDevice {
+ public:
+  virtual ~RenderDevice() = default;
+
+  /// Uploads the meshes. The scene outlives the device's use of it.
+  virtual void load(const Scene& scene) = 0;
+
+  /// Starts a frame: takes camera, viewport and transforms, clears ids and depth (D32F, far = 1,
+  /// nearer wins, the first drawn keeps a tie), forgets all queries of the frame before.
+  virtual void begin_frame(const Frame& frame) = 0;
+
+  /// Draws whole objects, or ranges of their triangles, in this order, both sides of every
+  /// triangle. Returns before the drawing is done. The spans need not outlive the call. A device
+  /// call of at most a few microseconds for each object (one draw per object, indirect); ranges of
+  /// one object that follow each other are compacted into one draw.
+  virtual void draw(std::span<const ObjectId> objects) = 0;
+  virtual void draw(std::span<const TriangleRange> ranges) = 0;
+
+  /// Asks how many samples of the image the faces of these world boxes would add to what is drawn
+  /// so far; writes neither ids nor depth. The boxes must not touch the near region (see
+  /// touches_near_region). Valid until the next begin_frame.
+  virtual QueryId query(std::span<const Aabb> boxes) = 0;
+
+  /// Hands what was asked so far to the device, so that answers can arrive.
+  virtual void flush() = 0;
+  /// True if samples(query) would not wait.
+  virtual bool ready(QueryId query) = 0;
+  /// Waits for the answer.
+  virtual std::uint64_t samples(QueryId query) = 0;
+
+  /// Waits until everything is drawn.
+  virtual void finish() = 0;
+
+  /// Name and version of the renderer, for the context of results.
+  virtual std::string description() const = 0;
+};
+
+}  // namespace vislab
