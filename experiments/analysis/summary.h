@@ -1,0 +1,86 @@
+// What the stored cells say: metrics per cell, paired comparisons, blocks as the report shows them.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "experiments/results/store.h"
+
+namespace vislab {
+
+/// A value with its 95 % bootstrap interval.
+struct Estimate {
+  double value = 0.0, low = 0.0, high = 0.0;
+};
+
+/// Statistics over all frames; each frame counts with the median of its rounds.
+struct TimeSummary {
+  Estimate median;              // of the frames; the interval comes from resampling rounds
+  double p95 = 0.0, p99 = 0.0;  // over all samples of all rounds
+  double worst = 0.0;
+};
+
+struct CellSummary {
+  std::string id;
+  std::string culler;     // short name; the A/A control is "none (again)"
+  std::string canonical;  // chain with all parameters
+  bool anchor = false;    // none, oracle and the A/A control
+  int replicate = 0;
+  ResultCell::Status status = ResultCell::Status::done;
+  std::string reason;
+  Guarantee guarantee = Guarantee::conservative;
+  Repeatability repeatability = Repeatability::stateless;
+  Granularity granularity = Granularity::object;
+  int rounds = 0;
+
+  // Accuracy, sums over all frames unless it says otherwise.
+  bool judged = false;       // false: the values below mean nothing
+  std::uint64_t pixels = 0;  // samples of C judged: the n of "0 of n"
+  std::uint64_t false_px = 0, max_false_px = 0, false_objects = 0, false_triangles = 0;
+  std::uint64_t false_jittered = 0, jittered = 0;
+  std::uint64_t disputed_px = 0;  // lost but excused
+  bool drawn = false;
+  std::uint64_t image_px = 0, disputed_image_px = 0;
+  double over = 0.0, over_objects = 0.0, under = 0.0;  // ratios of sums over all frames
+  double recall = 0.0;                                 // hidden triangles culled / hidden triangles
+  double submitted_triangles = 0.0, visible_triangles = 0.0, kept_objects = 0.0;  // per frame
+
+  // Times. Zero samples if the cell was not timed.
+  TimeSummary update_us, cull_us, draw_ms, frame_ms;
+  double build_ms = 0.0;
+  double modelled_frame_ms = 0.0;
+  std::uint64_t bytes = 0;
+  /// frame_ms of this cell / frame_ms of none, paired by frame and round.
+  Estimate against_none;
+  /// frame_ms of the oracle of the same level / frame_ms of this cell, paired.
+  Estimate efficiency;
+  std::map<std::string, double> counters;  // per frame
+
+  /// The value under the metric's name as in `vislab list metrics`; NaN if it does not apply.
+  double metric(const std::string& name) const;
+};
+
+struct BlockSummary {
+  std::string scene, scene_description, path;
+  std::string scene_hash, path_hash;
+  Viewport viewport;
+  std::string device;
+  int threads = 0;
+  std::uint64_t seed = 0;
+  int frames = 0;
+  std::uint64_t objects = 0, triangles = 0;
+  /// Truth against the unculled image, over all frames.
+  std::uint64_t floor_pixels = 0, floor_disputed_px = 0, floor_undisputed_px = 0;
+  /// none against its A/A control: how far from 1 the interval reaches is the noise of ratios.
+  Estimate noise;
+  std::vector<CellSummary> cells;              // none, the oracles, then by name
+  std::map<std::string, std::string> context;  // of the first cell
+  std::vector<std::string> machines;           // ids of all machines that measured cells here
+};
+
+/// All blocks in the folder, by scene and path. Cells without verdicts of the present judge are
+/// summarised without accuracy (`judged` is false).
+std::vector<BlockSummary> summarise(const ResultStore& store);
+
+}  // namespace vislab

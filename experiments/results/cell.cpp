@@ -1,0 +1,172 @@
+#include "experiments/results/cell.h"
+
+#include <array>
+
+#include "experiments/results/hash.h"
+#include "experiments/results/json_reader.h"
+
+namespace vislab {
+namespace {
+
+using nlohmann::json;
+
+constexpr int format_version = 1;
+
+/// The value of an enumeration from its name.
+template <typename Enum, std::size_t n>
+Enum from_name(const std::string& name, const std::array<Enum, n>& values,
+               const std::string& where) {
+  for (const Enum value : values) {
+    if (to_string(value) == name) return value;
+  }
+  throw InputError(where + ": '" + name + "' is not a known word; delete the file and run again");
+}
+
+constexpr std::array statuses{ResultCell::Status::running, ResultCell::Status::done,
+                              ResultCell::Status::failed};
+constexpr std::array guarantees{Guarantee::conservative, Guarantee::image_exact,
+                                Guarantee::approximate, Guarantee::erroneous};
+constexpr std::array repeatabilities{Repeatability::stateless, Repeatability::path,
+                                     Repeatability::timing};
+constexpr std::array granularities{Granularity::object, Granularity::triangle};
+
+json key_to_json(const CellKey& key) {
+  return {
+      {"chain", key.chain},          {"scene_hash", key.scene_hash},  {"path_hash", key.path_hash},
+      {"width", key.viewport.width}, {"height", key.viewport.height}, {"seed", key.seed},
+      {"device", key.device},        {"threads", key.threads},        {"simd", key.simd},
+      {"sources", key.sources},      {"replicate", key.replicate}};
+}
+
+CellKey key_from_json(const json& j) {
+  CellKey key;
+  key.chain = j.at("chain");
+  key.scene_hash = j.at("scene_hash");
+  key.path_hash = j.at("path_hash");
+  key.viewport = {j.at("width"), j.at("height")};
+  key.seed = j.at("seed");
+  key.device = j.at("device");
+  key.threads = j.at("threads");
+  key.simd = j.at("simd");
+  key.sources = j.at("sources");
+  key.replicate = j.at("replicate");
+  return key;
+}
+
+}  // namespace
+
+std::string CellKey::id() const { return hash_text(key_to_json(*this).dump()); }
+
+std::string to_string(ResultCell::Status status) {
+  switch (status) {
+    case ResultCell::Status::running:
+      return "running";
+    case ResultCell::Status::done:
+      return "done";
+    case ResultCell::Status::failed:
+      return "failed";
+  }
+  return "";
+}
+
+std::string to_json(const ResultCell& cell) {
+  json frames = json::array();
+  for (const CellFrame& frame : cell.frames) {
+    frames.push_back({{"set", frame.set},
+                      {"truth", frame.truth},
+                      {"submitted_triangles", frame.submitted_triangles},
+                      {"counters", frame.counters}});
+  }
+  json rounds = json::array();
+  for (const Round& round : cell.rounds) {
+    rounds.push_back({{"session", round.session},
+                      {"number", round.number},
+                      {"update_us", round.update_us},
+                      {"cull_us", round.cull_us},
+                      {"draw_ms", round.draw_ms},
+                      {"frame_ms", round.frame_ms}});
+  }
+  json anchors = json::object();
+  for (const auto& [chain, anchor_rounds] : cell.anchors) {
+    json& list = anchors[chain] = json::array();
+    for (const AnchorRound& round : anchor_rounds) {
+      list.push_back(
+          {{"session", round.session}, {"number", round.number}, {"frame_ms", round.frame_ms}});
+    }
+  }
+  const json j = {{"format", format_version},
+                  {"id", cell.key.id()},
+                  {"key", key_to_json(cell.key)},
+                  {"culler", cell.culler},
+                  {"scene", cell.scene},
+                  {"path", cell.path},
+                  {"scene_description", cell.scene_description},
+                  {"scene_objects", cell.scene_objects},
+                  {"scene_triangles", cell.scene_triangles},
+                  {"status", to_string(cell.status)},
+                  {"reason", cell.reason},
+                  {"guarantee", to_string(cell.guarantee)},
+                  {"repeatability", to_string(cell.repeatability)},
+                  {"granularity", to_string(cell.granularity)},
+                  {"build_ms", cell.build_ms},
+                  {"bytes", cell.bytes},
+                  {"frames", frames},
+                  {"rounds", rounds},
+                  {"anchors", anchors},
+                  {"context", cell.context}};
+  return j.dump() + "\n";
+}
+
+ResultCell parse_cell(const std::string& text, const std::string& where) {
+  const json j = parse_json(text, where);
+  return read_json(where, [&] {
+    if (j.at("format") != format_version) {
+      throw InputError(where + ": results of another format; delete the file and run again");
+    }
+    ResultCell cell;
+    cell.key = key_from_json(j.at("key"));
+    if (j.at("id") != cell.key.id()) {
+      throw InputError(where + ": the id does not fit the key; delete the file and run again");
+    }
+    cell.culler = j.at("culler");
+    cell.scene = j.at("scene");
+    cell.path = j.at("path");
+    cell.scene_description = j.at("scene_description");
+    cell.scene_objects = j.at("scene_objects");
+    cell.scene_triangles = j.at("scene_triangles");
+    cell.status = from_name(j.at("status").get<std::string>(), statuses, where);
+    cell.reason = j.at("reason");
+    cell.guarantee = from_name(j.at("guarantee").get<std::string>(), guarantees, where);
+    cell.repeatability =
+        from_name(j.at("repeatability").get<std::string>(), repeatabilities, where);
+    cell.granularity = from_name(j.at("granularity").get<std::string>(), granularities, where);
+    cell.build_ms = j.at("build_ms");
+    cell.bytes = j.at("bytes");
+    for (const json& frame : j.at("frames")) {
+      cell.frames.push_back({frame.at("set"), frame.at("truth"), frame.at("submitted_triangles"),
+                             frame.at("counters")});
+    }
+    for (const json& r : j.at("rounds")) {
+      cell.rounds.push_back({r.at("session"), r.at("number"), r.at("update_us"), r.at("cull_us"),
+                             r.at("draw_ms"), r.at("frame_ms")});
+      const Round& round = cell.rounds.back();
+      for (const auto* samples :
+           {&round.update_us, &round.cull_us, &round.draw_ms, &round.frame_ms}) {
+        if (samples->size() != cell.frames.size()) {
+          throw InputError(where +
+                           ": a round does not have one sample a frame; delete the file and "
+                           "run again");
+        }
+      }
+    }
+    for (const auto& [chain, list] : j.at("anchors").items()) {
+      for (const json& r : list) {
+        cell.anchors[chain].push_back({r.at("session"), r.at("number"), r.at("frame_ms")});
+      }
+    }
+    cell.context = j.at("context").get<std::map<std::string, std::string>>();
+    return cell;
+  });
+}
+
+}  // namespace vislab

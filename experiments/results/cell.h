@@ -1,0 +1,82 @@
+// A cell of an experiment matrix: one chain on one scene and path, and everything measured of it.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/culler/culler.h"
+#include "common/geometry/camera.h"
+
+namespace vislab {
+
+/// What determines a cell's answers. Cells are named by the hash of this.
+struct CellKey {
+  std::string chain;       // canonical: all parameters written out
+  std::string scene_hash;  // Scene::content_hash
+  std::string path_hash;   // Path::content_hash
+  Viewport viewport;
+  std::uint64_t seed = 1;
+  std::string device = "osmesa";  // or "none": nothing is drawn
+  int threads = 2;
+  std::string simd;     // instruction set that run-time dispatch chose
+  std::string sources;  // hash of the sources that the chain's families depend on
+  int replicate = 0;    // 1 = the A/A control: the same chain once more in the same block
+  /// 32 hexadecimal digits.
+  std::string id() const;
+};
+
+/// Samples of one pass over the path, by frame.
+struct Round {
+  std::string session;  // which run of the block measured it: rounds pair within a session
+  int number = 0;       // of the round in that session
+  std::vector<double> update_us, cull_us, draw_ms, frame_ms;
+};
+
+/// Frame times of a block's anchors (none, oracle) in the same round as this cell's.
+struct AnchorRound {
+  std::string session;
+  int number = 0;
+  std::vector<double> frame_ms;
+};
+
+/// Deterministic part of a frame's answer.
+struct CellFrame {
+  std::string set;    // VisibleSet::hash
+  std::string truth;  // truth_key
+  std::uint64_t submitted_triangles = 0;
+  std::map<std::string, std::uint64_t> counters;
+};
+
+struct ResultCell {
+  CellKey key;
+  // Names for people; not part of the key.
+  std::string culler;  // Registry::short_name
+  std::string scene;
+  std::string path;
+  std::string scene_description;
+  std::uint64_t scene_objects = 0, scene_triangles = 0;
+
+  enum class Status { running, done, failed } status = Status::running;
+  std::string reason;  // of a failure: "timed out after 300 s", "out of memory", …
+
+  Guarantee guarantee = Guarantee::conservative;
+  Repeatability repeatability = Repeatability::stateless;
+  Granularity granularity = Granularity::object;
+
+  double build_ms = 0.0;
+  std::uint64_t bytes = 0;
+  std::vector<CellFrame> frames;
+  std::vector<Round> rounds;
+  std::map<std::string, std::vector<AnchorRound>> anchors;  // by the anchor's canonical chain
+  std::map<std::string, std::string> context;               // machine, compiler, revision, …
+};
+
+std::string to_string(ResultCell::Status status);
+
+/// JSON text, and back. parse_cell throws InputError that names `where` and what is wrong.
+std::string to_json(const ResultCell& cell);
+ResultCell parse_cell(const std::string& json, const std::string& where);
+
+}  // namespace vislab

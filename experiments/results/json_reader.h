@@ -1,0 +1,31 @@
+// Reading JSON fields with errors that say where and what.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "common/scene/error.h"
+
+namespace vislab {
+
+/// Parses text; throws InputError that names `where`.
+inline nlohmann::json parse_json(const std::string& text, const std::string& where) {
+  try {
+    return nlohmann::json::parse(text);
+  } catch (const nlohmann::json::exception&) {
+    throw InputError(where + ": not valid JSON; delete the file and run again");
+  }
+}
+
+/// Runs `read`, which takes fields out of parsed JSON, and turns a missing or mistyped field into
+/// an InputError that names `where`.
+template <typename Function>
+auto read_json(const std::string& where, Function&& read) {
+  try {
+    return read();
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(where + ": " + error.what() + "; delete the file and run again");
+  }
+}
+
+}  // namespace vislab

@@ -1,0 +1,224 @@
+#include "experiments/results/store.h"
+
+#include <unistd.h>
+#include <zlib.h>
+
+#include <algorithm>
+
+#include "common/scene/error.h"
+#include "experiments/results/files.h"
+#include "experiments/results/json_reader.h"
+
+namespace vislab {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+/// Variable-length number: seven bits a byte, the lowest first.
+void append_number(std::string& bytes, std::uint32_t value) {
+  while (value >= 0x80U) {
+    bytes.push_back(static_cast<char>((value & 0x7FU) | 0x80U));
+    value >>= 7U;
+  }
+  bytes.push_back(static_cast<char>(value));
+}
+
+bool take_number(const std::string& bytes, std::size_t& at, std::uint32_t& value) {
+  value = 0;
+  for (unsigned shift = 0; shift < 35 && at < bytes.size(); shift += 7) {
+    const auto byte = static_cast<unsigned char>(bytes[at++]);
+    value |= static_cast<std::uint32_t>(byte & 0x7FU) << shift;
+    if ((byte & 0x80U) == 0) return true;
+  }
+  return false;
+}
+
+std::string compressed(const std::string& bytes) {
+  uLongf size = compressBound(static_cast<uLong>(bytes.size()));
+  std::string result(4 + size, '\0');
+  const auto length = static_cast<std::uint32_t>(bytes.size());
+  for (unsigned i = 0; i < 4; ++i) result[i] = static_cast<char>(length >> (8 * i));
+  compress2(reinterpret_cast<Bytef*>(result.data() + 4), &size,
+            reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()), 6);
+  result.resize(4 + size);
+  return result;
+}
+
+/// Empty optional if the bytes are not what compressed() made.
+std::optional<std::string> uncompressed(const std::string& bytes) {
+  if (bytes.size() < 4) return std::nullopt;
+  std::uint32_t length = 0;
+  for (unsigned i = 0; i < 4; ++i) {
+    length |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
+  }
+  if (length > 1000ULL * bytes.size()) return std::nullopt;  // zlib cannot have packed that much
+  std::string result(length, '\0');
+  uLongf size = length;
+  const int status = uncompress(reinterpret_cast<Bytef*>(result.data()), &size,
+                                reinterpret_cast<const Bytef*>(bytes.data() + 4),
+                                static_cast<uLong>(bytes.size() - 4));
+  if (status != Z_OK || size != length) return std::nullopt;
+  return result;
+}
+
+json to_json(const Verdict& v) {
+  return {{"pixels", v.pixels},
+          {"false_px", v.false_px},
+          {"max_false_px", v.max_false_px},
+          {"disputed_lost_px", v.disputed_lost_px},
+          {"false_objects", v.false_objects},
+          {"false_triangles", v.false_triangles},
+          {"false_jittered", v.false_jittered},
+          {"jittered", v.jittered},
+          {"visible_objects", v.visible_objects},
+          {"visible_triangles", v.visible_triangles},
+          {"kept_objects", v.kept_objects},
+          {"submitted_triangles", v.submitted_triangles},
+          {"over_objects_count", v.over_objects_count},
+          {"over_triangles_count", v.over_triangles_count},
+          {"under_objects_count", v.under_objects_count},
+          {"under_triangles_count", v.under_triangles_count},
+          {"scene_objects", v.scene_objects},
+          {"scene_triangles", v.scene_triangles},
+          {"wrong_px", v.wrong_px}};
+}
+
+Verdict verdict_from(const json& j) {
+  Verdict v;
+  v.pixels = j.at("pixels");
+  v.false_px = j.at("false_px");
+  v.max_false_px = j.at("max_false_px");
+  v.disputed_lost_px = j.at("disputed_lost_px");
+  v.false_objects = j.at("false_objects");
+  v.false_triangles = j.at("false_triangles");
+  v.false_jittered = j.at("false_jittered");
+  v.jittered = j.at("jittered");
+  v.visible_objects = j.at("visible_objects");
+  v.visible_triangles = j.at("visible_triangles");
+  v.kept_objects = j.at("kept_objects");
+  v.submitted_triangles = j.at("submitted_triangles");
+  v.over_objects_count = j.at("over_objects_count");
+  v.over_triangles_count = j.at("over_triangles_count");
+  v.under_objects_count = j.at("under_objects_count");
+  v.under_triangles_count = j.at("under_triangles_count");
+  v.scene_objects = j.at("scene_objects");
+  v.scene_triangles = j.at("scene_triangles");
+  v.wrong_px = j.at("wrong_px").get<std::vector<std::array<std::uint16_t, 2>>>();
+  return v;
+}
+
+}  // namespace
+
+ResultStore ResultStore::create(fs::path folder) {
+  std::error_code code;
+  for (const char* part : {"cells", "sets", "truth", "verdicts"}) {
+    fs::create_directories(folder / part, code);
+    if (code || ::access((folder / part).c_str(), W_OK | X_OK) != 0) {
+      throw InputError("results folder " + folder.string() + " cannot be written to" +
+                       (code ? ": " + code.message() : std::string()) +
+                       "; name another with --results");
+    }
+  }
+  return ResultStore(std::move(folder));
+}
+
+ResultStore ResultStore::open(fs::path folder) {
+  if (!fs::is_directory(folder / "cells")) {
+    throw InputError("no results in " + folder.string() +
+                     "; measure some with 'vislab run' or name another folder with --results");
+  }
+  return ResultStore(std::move(folder));
+}
+
+std::optional<ResultCell> ResultStore::load_cell(const std::string& id) const {
+  const fs::path file = folder_ / "cells" / (id + ".json");
+  if (!fs::exists(file)) return std::nullopt;
+  return parse_cell(read_file(file), file.string());
+}
+
+void ResultStore::save_cell(const ResultCell& cell) const {
+  write_file(folder_ / "cells" / (cell.key.id() + ".json"), to_json(cell));
+}
+
+std::vector<ResultCell> ResultStore::load_all() const {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder_ / "cells")) {
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  std::vector<ResultCell> cells;
+  for (const fs::path& file : files) cells.push_back(parse_cell(read_file(file), file.string()));
+  return cells;
+}
+
+void ResultStore::save_set(const std::string& hash, const VisibleSet& set) const {
+  const fs::path file = folder_ / "sets" / (hash + ".set");
+  if (fs::exists(file)) return;
+  std::string bytes;
+  TriangleId end = 0;
+  for (const VisibleSet::Run& run : set.runs()) {
+    append_number(bytes, run.first - end);
+    append_number(bytes, run.count);
+    end = run.first + run.count;
+  }
+  write_file(file, compressed(bytes));
+}
+
+VisibleSet ResultStore::load_set(const std::string& hash) const {
+  const fs::path file = folder_ / "sets" / (hash + ".set");
+  const InputError corrupt(file.string() + ": not a visible set; delete the results and run again");
+  const std::optional<std::string> bytes = uncompressed(read_file(file));
+  if (!bytes) throw corrupt;
+  std::vector<VisibleSet::Run> runs;
+  TriangleId end = 0;
+  for (std::size_t at = 0; at < bytes->size();) {
+    std::uint32_t gap = 0;
+    std::uint32_t count = 0;
+    if (!take_number(*bytes, at, gap) || !take_number(*bytes, at, count)) throw corrupt;
+    runs.push_back({end + gap, count});
+    end += gap + count;
+  }
+  VisibleSet set(std::move(runs));
+  if (set.hash() != hash) throw corrupt;
+  return set;
+}
+
+std::optional<CellVerdicts> ResultStore::load_verdicts(const std::string& id,
+                                                       const std::string& judge) const {
+  const fs::path file = folder_ / "verdicts" / (id + ".json");
+  if (!fs::exists(file)) return std::nullopt;
+  try {
+    const json j = json::parse(read_file(file));
+    CellVerdicts verdicts;
+    verdicts.judge = j.at("judge");
+    if (verdicts.judge != judge) return std::nullopt;
+    for (const json& frame : j.at("frames")) verdicts.frames.push_back(verdict_from(frame));
+    for (const json& image : j.at("images")) {
+      verdicts.images.push_back({image.at("image_px"), image.at("disputed_image_px")});
+    }
+    verdicts.floor_disputed_px = j.at("floor_disputed_px");
+    verdicts.floor_undisputed_px = j.at("floor_undisputed_px");
+    return verdicts;
+  } catch (const json::exception&) {
+    return std::nullopt;  // derived data: it is made again
+  }
+}
+
+void ResultStore::save_verdicts(const std::string& id, const CellVerdicts& verdicts) const {
+  json frames = json::array();
+  for (const Verdict& verdict : verdicts.frames) frames.push_back(to_json(verdict));
+  json images = json::array();
+  for (const ImageVerdict& image : verdicts.images) {
+    images.push_back(
+        {{"image_px", image.image_px}, {"disputed_image_px", image.disputed_image_px}});
+  }
+  const json j = {{"judge", verdicts.judge},
+                  {"frames", frames},
+                  {"images", images},
+                  {"floor_disputed_px", verdicts.floor_disputed_px},
+                  {"floor_undisputed_px", verdicts.floor_undisputed_px}};
+  write_file(folder_ / "verdicts" / (id + ".json"), j.dump() + "\n");
+}
+
+}  // namespace vislab

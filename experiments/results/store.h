@@ -1,0 +1,59 @@
+// A results folder: one JSON file per cell, visible sets once per hash, truth, verdicts.
+//   cells/ID.json      what was measured (the truth of the results)
+//   sets/HASH.set      visible sets, compressed
+//   truth/KEY.truth    what rays saw, compressed
+//   verdicts/ID.json   what the judge made of a cell's sets; derived, may be deleted
+// Files are written to a temporary name and renamed.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/culler/visible_set.h"
+#include "common/judge/metrics.h"
+#include "experiments/results/cell.h"
+
+namespace vislab {
+
+/// The judge's verdicts on all frames of a cell, and the error floor of those frames.
+struct CellVerdicts {
+  std::string judge;  // hash of the judge's sources: verdicts of another judge are made again
+  std::vector<Verdict> frames;
+  std::vector<ImageVerdict> images;       // empty if nothing was drawn
+  std::uint64_t floor_disputed_px = 0;    // truth against the unculled image, sum over frames
+  std::uint64_t floor_undisputed_px = 0;  // not zero only if the judge itself is at fault
+};
+
+class ResultStore {
+ public:
+  /// Makes the folder and its parts. Throws InputError if that cannot be done or written to.
+  static ResultStore create(std::filesystem::path folder);
+  /// Opens an existing folder for reading. Throws InputError if there is none.
+  static ResultStore open(std::filesystem::path folder);
+
+  const std::filesystem::path& folder() const { return folder_; }
+  std::filesystem::path truth_folder() const { return folder_ / "truth"; }
+
+  /// Empty if there is none. Throws InputError that names the file if it is corrupt.
+  std::optional<ResultCell> load_cell(const std::string& id) const;
+  void save_cell(const ResultCell& cell) const;
+  /// All cells, by id. Throws InputError that names the first corrupt file.
+  std::vector<ResultCell> load_all() const;
+
+  /// Writes the set unless it is there.
+  void save_set(const std::string& hash, const VisibleSet& set) const;
+  /// Throws InputError if it is missing or corrupt.
+  VisibleSet load_set(const std::string& hash) const;
+
+  /// Empty if there are none, they cannot be read, or another judge made them.
+  std::optional<CellVerdicts> load_verdicts(const std::string& id, const std::string& judge) const;
+  void save_verdicts(const std::string& id, const CellVerdicts& verdicts) const;
+
+ private:
+  explicit ResultStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  std::filesystem::path folder_;
+};
+
+}  // namespace vislab

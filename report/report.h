@@ -1,0 +1,30 @@
+// The report: one self-contained HTML page and the same as PDF, written from stored results.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/culler/registry.h"
+#include "experiments/analysis/summary.h"
+
+namespace vislab {
+
+struct ReportInput {
+  std::vector<BlockSummary> blocks;
+  const Registry* cullers = nullptr;  // for the method pages
+  /// Writes a picture of a block's most telling frame under a culler to `file` (PNG), as `vislab show`
+  /// does; returns a caption. Empty function: no pictures.
+  std::function<std::string(const BlockSummary& block, const CellSummary& cell,
+                            const std::filesystem::path& file)>
+      picture;
+};
+
+/// Writes index.html and report.pdf into `folder` (made if missing). Both appear only when whole.
+/// Runs pandoc, gnuplot and chromium; throws InputError that names the program that is missing or
+/// failed, or if there is nothing to report. `template_folder` is the repository's report/.
+void write_report(const ReportInput& input, const std::filesystem::path& template_folder,
+                  const std::filesystem::path& folder);
+
+}  // namespace vislab
