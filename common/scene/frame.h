@@ -12,7 +12,7 @@ namespace vislab {
 
 /// What differs between a frame and the one before it. Ids are sorted and unique.
 struct Changes {
-  std::vector<ObjectId> moved;  // got a new transform
+  std::vector<ObjectId> moved;           // got a new transform
   std::vector<glm::dmat4x3> transforms;  // of `moved`, in the same order
   std::vector<ObjectId> shown;           // were hidden, or are new
   std::vector<ObjectId> hidden;          // are no longer candidates; removed objects stay hidden
@@ -34,7 +34,8 @@ class SceneState {
 
   /// Back to the scene as built: everything shown, original transforms.
   void reset();
-  /// Throws InputError for ids out of range, singular transforms, or objects shown twice.
+  /// Throws InputError for ids out of range or order, singular or mirroring transforms, objects
+  /// shown that are shown already, or hidden that are hidden; the state is then as it was.
   /// O(changes), plus O(objects) if anything is shown or hidden.
   void apply(const Changes& changes);
 
@@ -55,7 +56,8 @@ struct Frame {
   Camera camera;
   Viewport viewport;
   ObjectsView objects;
-  double last_frame_ms = 0.0;  // how long the frame before took, as the harness measured it; 0 first
+  double last_frame_ms =
+      0.0;  // how long the frame before took, as the harness measured it; 0 first
 };
 
 /// Consecutive triangles of one object: indices into its mesh.

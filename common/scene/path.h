@@ -1,4 +1,5 @@
-// Camera paths: what happens from frame to frame. Deterministic; made from a description or recorded.
+// Camera paths: what happens from frame to frame. Deterministic; made from a description or
+// recorded.
 #pragma once
 
 #include <string>

@@ -1,9 +1,9 @@
 // What visibility needs of a scene and nothing else: triangle meshes, objects that place them, and,
 // where the source has them, cells, portals and the tree of a Quake III world.
 //
-// Frames of reference: mesh vertices are float in the mesh's frame; an object's transform takes them
-// to the world in double. Consumers that need float world positions (ray tracer, graphics device)
-// subtract Scene::origin() first.
+// Frames of reference: mesh vertices are float in the mesh's frame; an object's transform takes
+// them to the world in double. Consumers that need float world positions (ray tracer, graphics
+// device) subtract Scene::origin() first.
 #pragma once
 
 #include <array>
@@ -39,7 +39,7 @@ struct Mesh {
 /// An instance of a mesh.
 struct Object {
   MeshId mesh = 0;
-  glm::dmat4x3 transform{1.0};  // mesh frame to world; affine, not singular
+  glm::dmat4x3 transform{1.0};  // mesh frame to world; affine, determinant > 0
   CellId cell = none_id;
 };
 
@@ -74,10 +74,12 @@ class Scene {
   std::shared_ptr<const QuakeWorld> quake;  // null unless the scene is a Quake III world
   SceneReport report;
 
-  /// Validates everything and computes what the functions below return. To be called once, after the
-  /// public members are filled. Throws InputError for used vertices that are NaN or infinite,
-  /// indices out of range, meshes without a triangle, singular transforms, no object at all, or
-  /// 2^32 - 1 triangles and more. Fills Mesh::bounds, Mesh::closed and the report. O(size).
+  /// Validates everything and computes what the functions below return. To be called once, after
+  /// the public members are filled. Throws InputError for used vertices that are NaN or infinite,
+  /// indices out of range, meshes without a triangle, singular or mirroring transforms, no object
+  /// at all, or 2^32 - 1 triangles and more. Unused vertices that are NaN or infinite are removed.
+  /// Fills Mesh::bounds, Mesh::closed and the report. O(n log n) in the meshes, O(n) in the
+  /// objects.
   void finish();
 
   std::size_t object_count() const { return objects.size(); }

@@ -1,0 +1,65 @@
+// Scenes made from a few numbers and a seed; the same everywhere for the same parameters. All are y
+// up and in metres, and none is finished yet (Scene::finish).
+#pragma once
+
+#include <cstdint>
+
+#include "common/scene/scene.h"
+
+namespace vislab {
+
+/// A closed cube from -1 to 1 on each axis, 12 triangles.
+Mesh cube_mesh();
+
+/// Places cube_mesh() as the axis-aligned box around `center`.
+glm::dmat4x3 box_transform(const glm::dvec3& center, const glm::dvec3& half_size);
+
+struct BoxFieldParameters {
+  std::uint32_t count = 1000;
+  double extent_m = 500.0;  // centres lie in the cube from -extent to extent
+  double min_half_size_m = 0.2, max_half_size_m = 2.0;
+  double clear_radius_m = 5.0;  // no box comes as near to the origin, where cameras stand
+  std::uint64_t seed = 1;
+};
+
+/// Axis-aligned boxes, uniform in a cube, that share one mesh. Needs max_half_size and clear_radius
+/// well below the extent.
+Scene make_box_field(const BoxFieldParameters& parameters);
+
+struct HaresParameters {
+  std::uint32_t count = 14;
+  double size_m = 1.0;     // the longest side of a hare's box
+  double spacing_m = 2.0;  // between neighbours on an axis, and from the origin to the first
+};
+
+/// `count` instances of a mesh outward along the six half-axes, dealt out in the order +x, -x, +y,
+/// -y, +z, -z; the series of Kowalka's thesis (HAW Hamburg, 2016). `hare` must have triangles.
+Scene make_hares(Mesh hare, const HaresParameters& parameters);
+
+struct CityParameters {
+  std::uint32_t blocks_x = 50, blocks_z = 40;  // one building a block
+  double roof_share = 0.0;                     // buildings with a gable roof instead of a flat one
+  std::uint32_t street_boxes = 0;              // small boxes between the buildings
+  std::uint64_t seed = 1;
+};
+
+/// Random houses on a grid of streets with a pitch of 25 m, centred at the origin on the plane y =
+/// 0: half widths 6 to 10 m, heights 8 to 30 m, one in ten 40 to 80 m. Street boxes have half sizes
+/// of 0.3 to 2 m; they rest on the ground, or, one in ten, hover at 5 to 60 m. They lie along the
+/// streets and keep 1 m from the middle of every street, so that a camera can walk there.
+Scene make_city(const CityParameters& parameters);
+
+struct RoomRingParameters {
+  std::uint32_t rooms = 12;
+  std::uint32_t boxes_per_room = 4;
+  std::uint64_t seed = 1;
+};
+
+/// Rooms in a ring, each a cell, joined by door openings, each two portals (one for each
+/// direction). The walls of a room are one object and face inward; boxes stand in the rooms'
+/// corners. Rooms are 5 m high and 10 m deep, doors 2.5 m by 2 m in the middle of the walls; the
+/// ring grows with the number of rooms (at least 4), so that a room is about 10 m long in its
+/// middle.
+Scene make_room_ring(const RoomRingParameters& parameters);
+
+}  // namespace vislab

@@ -1,0 +1,149 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "common/geometry/random.h"
+#include "common/scene/generators/generators.h"
+
+namespace vislab {
+namespace {
+
+constexpr double half_depth_m = 5.0;
+constexpr double half_door_m = 1.0;
+constexpr double door_height_m = 2.5;
+constexpr double room_height_m = 5.0;
+
+/// Points of the ring by partition, radius and height. Rooms share them exactly: walls, floors and
+/// doors are cut along the same lines, so that neither rays nor pixels find a gap.
+class Ring {
+ public:
+  explicit Ring(std::uint32_t rooms)
+      : rooms_(rooms),
+        radius_(std::max(10.0, rooms * 2.0 * half_depth_m / (2.0 * std::numbers::pi))) {}
+
+  double half_angle() const { return std::numbers::pi / rooms_; }
+  double radius() const { return radius_; }
+  std::array<double, 4> radii() const {
+    return {radius_ - half_depth_m, radius_ - half_door_m, radius_ + half_door_m,
+            radius_ + half_depth_m};
+  }
+  /// Angles run counter-clockwise seen from above; partition k is between rooms k - 1 and k.
+  glm::vec3 point(std::uint32_t partition, double radius, double height) const {
+    const double angle = 2.0 * half_angle() * (partition % rooms_);
+    return {radius * std::cos(angle), height, -radius * std::sin(angle)};
+  }
+
+ private:
+  std::uint32_t rooms_;
+  double radius_;
+};
+
+using Quad = std::array<glm::vec3, 4>;
+
+Quad turned_round(const Quad& quad) { return {quad[3], quad[2], quad[1], quad[0]}; }
+
+/// Collects quads into a mesh whose vertices are shared.
+class QuadMesh {
+ public:
+  void add(const Quad& quad) {
+    std::array<std::uint32_t, 4> v{};
+    for (std::size_t i = 0; i < 4; ++i) v[i] = vertex(quad[i]);
+    mesh.triangles.emplace_back(v[0], v[1], v[2]);
+    mesh.triangles.emplace_back(v[0], v[2], v[3]);
+  }
+  Mesh mesh;
+
+ private:
+  std::uint32_t vertex(const glm::vec3& p) {
+    const auto found = std::find(mesh.positions.begin(), mesh.positions.end(), p);
+    if (found == mesh.positions.end()) {
+      mesh.positions.push_back(p);
+      return static_cast<std::uint32_t>(mesh.positions.size() - 1);
+    }
+    return static_cast<std::uint32_t>(found - mesh.positions.begin());
+  }
+};
+
+/// A piece of partition k, counter-clockwise seen from room k - 1.
+Quad partition_quad(const Ring& ring, std::uint32_t k, double r0, double r1, double y0, double y1) {
+  return {ring.point(k, r0, y0), ring.point(k, r1, y0), ring.point(k, r1, y1),
+          ring.point(k, r0, y1)};
+}
+
+Mesh room_mesh(const Ring& ring, std::uint32_t k) {
+  const std::array<double, 4> radii = ring.radii();
+  const std::array<double, 3> heights{0.0, door_height_m, room_height_m};
+  QuadMesh room;
+  room.mesh.name = "room " + std::to_string(k);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 2; ++j) {
+      if (i == 1 && j == 0) continue;  // the door
+      const auto piece = [&](std::uint32_t partition) {
+        return partition_quad(ring, partition, radii[i], radii[i + 1], heights[j], heights[j + 1]);
+      };
+      room.add(turned_round(piece(k)));
+      room.add(piece(k + 1));
+    }
+    const auto level = [&](double y) {
+      return Quad{ring.point(k, radii[i], y), ring.point(k, radii[i + 1], y),
+                  ring.point(k + 1, radii[i + 1], y), ring.point(k + 1, radii[i], y)};
+    };
+    room.add(level(0.0));
+    room.add(turned_round(level(room_height_m)));
+  }
+  for (std::size_t j = 0; j < 2; ++j) {
+    const auto wall = [&](double r) {
+      return Quad{ring.point(k, r, heights[j]), ring.point(k + 1, r, heights[j]),
+                  ring.point(k + 1, r, heights[j + 1]), ring.point(k, r, heights[j + 1])};
+    };
+    room.add(wall(radii[0]));
+    room.add(turned_round(wall(radii[3])));
+  }
+  return room.mesh;
+}
+
+/// A box on the floor, on either side of the straight way from door to door.
+glm::dmat4x3 furniture(const Ring& ring, std::uint32_t k, Random& random) {
+  const double middle = (2.0 * k + 1.0) * ring.half_angle();
+  const glm::dvec3 outward(std::cos(middle), 0.0, -std::sin(middle));
+  const glm::dvec3 along(-std::sin(middle), 0.0, -std::cos(middle));
+  const double flatness = std::cos(ring.half_angle());
+  const double side = random.uniform() < 0.5 ? -1.0 : 1.0;
+  const double aside = side * random.uniform(2.2, 3.5) * flatness;
+  const double reach = 0.5 * (ring.radius() - half_depth_m) * std::sin(ring.half_angle());
+  const double onward = random.uniform(-reach, reach);
+  glm::dvec3 half(random.uniform(0.2, 0.6), random.uniform(0.2, 1.2), random.uniform(0.2, 0.6));
+  glm::dvec3 center = outward * (ring.radius() * flatness + aside) + along * onward;
+  center.y = half.y;
+  return box_transform(center, half);
+}
+
+}  // namespace
+
+Scene make_room_ring(const RoomRingParameters& parameters) {
+  const Ring ring(parameters.rooms);
+  Scene scene;
+  scene.meshes.push_back(cube_mesh());
+  Random random(parameters.seed);
+  for (std::uint32_t k = 0; k < parameters.rooms; ++k) {
+    Mesh mesh = room_mesh(ring, k);
+    scene.cells.push_back({bounds_of(mesh.positions)});
+    scene.objects.push_back({static_cast<MeshId>(scene.meshes.size()), glm::dmat4x3(1.0), k});
+    scene.meshes.push_back(std::move(mesh));
+    for (std::uint32_t i = 0; i < parameters.boxes_per_room; ++i) {
+      scene.objects.push_back({0, furniture(ring, k, random), k});
+    }
+  }
+  const std::array<double, 4> radii = ring.radii();
+  for (std::uint32_t k = 0; k < parameters.rooms; ++k) {
+    const std::uint32_t next = (k + 1) % parameters.rooms;
+    const Quad door = partition_quad(ring, next, radii[1], radii[2], 0.0, door_height_m);
+    const Quad back = turned_round(door);
+    scene.portals.push_back({{door.begin(), door.end()}, k, next});
+    scene.portals.push_back({{back.begin(), back.end()}, next, k});
+  }
+  return scene;
+}
+
+}  // namespace vislab

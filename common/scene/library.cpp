@@ -1,0 +1,129 @@
+#include "common/scene/library.h"
+
+#include <algorithm>
+
+#include "common/scene/description.h"
+#include "common/scene/error.h"
+#include "common/scene/file_bytes.h"
+#include "common/scene/mesh_import.h"
+#include "common/scene/quake_world.h"
+#include "common/scene/simplify.h"
+
+namespace vislab {
+namespace {
+
+/// The descriptions in a folder, sorted by name.
+std::vector<std::filesystem::path> descriptions_in(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  }
+  if (error) throw InputError(folder.string() + " cannot be read; it should hold descriptions");
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::filesystem::path located(const FileSource& source, const SceneDescription& scene,
+                              const DataFolders& folders) {
+  if (source.package.empty()) return scene.folder / source.file;
+  std::filesystem::path file = folders.cache / source.package / source.file;
+  if (!std::filesystem::exists(file)) {
+    throw InputError("scene " + scene.name + ": " + file.string() +
+                     " is missing, because package " + source.package +
+                     " has not been fetched; `./lab setup` fetches it");
+  }
+  return file;
+}
+
+/// Makes the scene that a description names; one overload for each source.
+class Maker {
+ public:
+  Maker(const SceneDescription& scene, const DataFolders& folders)
+      : scene_(scene), folders_(folders) {}
+
+  Scene operator()(const MeshSource& mesh) const {
+    Scene scene = import_mesh_file(located(mesh.source, scene_, folders_));
+    if (mesh.simplify_triangles > 0) {
+      if (scene.meshes.size() != 1) {
+        throw InputError("scene " + scene_.name + ": only a file with a single mesh can be " +
+                         "simplified; this one has " + std::to_string(scene.meshes.size()));
+      }
+      // finish() refuses broken meshes, which must not reach the simplifier.
+      scene.finish();
+      scene.meshes[0] = simplified(scene.meshes[0], mesh.simplify_triangles);
+    }
+    return scene;
+  }
+  Scene operator()(const QuakeSource& quake) const {
+    return import_quake_world(located(quake.source, scene_, folders_));
+  }
+  Scene operator()(const HaresSource& hares) const {
+    Scene scene = (*this)(hares.mesh);
+    if (scene.meshes.size() != 1) {
+      throw InputError("scene " + scene_.name + ": hares are made of a file with a single mesh");
+    }
+    return make_hares(std::move(scene.meshes[0]), hares.parameters);
+  }
+  Scene operator()(const BoxFieldParameters& field) const { return make_box_field(field); }
+  Scene operator()(const CityParameters& city) const { return make_city(city); }
+  Scene operator()(const RoomRingParameters& ring) const { return make_room_ring(ring); }
+
+ private:
+  const SceneDescription& scene_;
+  const DataFolders& folders_;
+};
+
+LoadedScene load_described(const std::filesystem::path& file, const DataFolders& folders) {
+  const SceneDescription description = read_scene_description(file);
+  LoadedScene loaded;
+  loaded.scene = std::visit(Maker(description, folders), description.source);
+  loaded.scene.name = description.name;
+  loaded.default_path = description.default_path;
+  return loaded;
+}
+
+LoadedScene load_file(const std::filesystem::path& file, const DataFolders& folders) {
+  require_file(file);
+  if (file.extension() == ".toml") return load_described(file, folders);
+  if (file.extension() == ".bsp") return {import_quake_world(file), ""};
+  return {import_mesh_file(file), ""};
+}
+
+}  // namespace
+
+std::vector<SceneSummary> list_scenes(const DataFolders& folders) {
+  std::vector<SceneSummary> scenes;
+  for (const std::filesystem::path& file : descriptions_in(folders.data / "scenes")) {
+    const SceneDescription scene = read_scene_description(file);
+    scenes.push_back({scene.name, scene.description, scene.default_path});
+  }
+  return scenes;
+}
+
+LoadedScene load_scene(const std::string& name_or_file, const DataFolders& folders) {
+  const std::filesystem::path described = folders.data / "scenes" / (name_or_file + ".toml");
+  const bool is_name = name_or_file.find_first_of("/.") == std::string::npos;
+  LoadedScene loaded;
+  try {
+    if (is_name && std::filesystem::exists(described)) {
+      loaded = load_described(described, folders);
+    } else if (is_name && !std::filesystem::exists(name_or_file)) {
+      std::vector<std::string> known;
+      for (const auto& file : descriptions_in(folders.data / "scenes")) {
+        known.push_back(file.stem().string());
+      }
+      throw unknown_name("scene or file", name_or_file, known);
+    } else {
+      loaded = load_file(name_or_file, folders);
+    }
+    loaded.scene.finish();
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    if (text.find(name_or_file) != std::string::npos) throw;
+    throw InputError("scene " + name_or_file + ": " + text);
+  }
+  return loaded;
+}
+
+}  // namespace vislab
