@@ -2,24 +2,24 @@
 // drawn the same way on the same device; and compares truth with the full scene's image.
 #pragma once
 
+#include <memory>
+
+#include "common/culler/visible_set.h"
+#include "common/judge/disputed.h"
 #include "common/judge/metrics.h"
-#include "common/render/osmesa_device.h"
 
 namespace vislab {
 
-/// Why a differing pixel is excused: it lies within 1/128 pixel of an edge of either triangle, or the
-/// two depths at its centre differ by less than 1e-4 relative. `a` and `b` are triangles (none_id for
-/// background: only the other's edges count then).
-bool is_disputed(const Frame& frame, const Scene& scene, const glm::dvec2& window_px, TriangleId a,
-                 TriangleId b);
-
 class ImageJudge {
  public:
-  /// Uses a device of its own. The scene outlives the judge.
+  /// Uses a device of its own, made here. The scene outlives the judge.
   explicit ImageJudge(const Scene& scene);
   ~ImageJudge();
+  ImageJudge(const ImageJudge&) = delete;
+  ImageJudge& operator=(const ImageJudge&) = delete;
 
-  /// Draws the full scene and keeps its ids for judge() and error_floor(). Once a frame.
+  /// Draws the full scene (all that is shown) and keeps its ids for judge() and error_floor(). Once
+  /// a frame, before them.
   void start(const Frame& frame);
 
   /// Differences between the image of `kept` and the full image.
@@ -30,6 +30,7 @@ class ImageJudge {
   struct Floor {
     std::uint64_t disputed_px = 0;
     std::uint64_t undisputed_px = 0;
+    friend bool operator==(const Floor&, const Floor&) = default;
   };
   Floor error_floor(const Frame& frame, const FrameTruth& truth);
 

@@ -3,10 +3,11 @@
 
 #include <array>
 #include <cstdint>
-#include <string>
+#include <span>
 #include <string_view>
 #include <vector>
 
+#include "common/culler/culler.h"
 #include "common/judge/truth.h"
 
 namespace vislab {
@@ -14,46 +15,53 @@ namespace vislab {
 /// The judge's verdict on one visible set of one frame. Counts are exact.
 struct Verdict {
   // Sample set C: pixel centres.
-  std::uint64_t pixels = 0;         // samples in C
-  std::uint64_t false_px = 0;       // undisputed samples whose triangle was left out
-  std::uint64_t max_false_px = 0;   // most of them on one object (object cullers) or triangle
-  std::uint64_t disputed_lost_px = 0;  // disputed samples whose triangle was left out: excused one by one
-  // Visible in C or J (undisputed), left out. An object whose only samples are disputed and all lost
-  // counts too.
+  std::uint64_t pixels = 0;            // samples in C
+  std::uint64_t false_px = 0;          // undisputed samples whose triangle was left out
+  std::uint64_t max_false_px = 0;      // most of them on one object (object cullers) or triangle
+  std::uint64_t disputed_lost_px = 0;  // disputed samples whose triangle was left out: excused
+  /// Objects with a lost undisputed sample of C or J and no undisputed sample left, and objects
+  /// that have disputed samples only and lost them all.
   std::uint64_t false_objects = 0;
+  /// Triangles with at least one lost undisputed sample of C or J.
   std::uint64_t false_triangles = 0;
   /// Undisputed samples of J whose triangle was left out, and the samples of J.
   std::uint64_t false_jittered = 0;
   std::uint64_t jittered = 0;
-  // Sizes of sets.
-  std::uint64_t visible_objects = 0, visible_triangles = 0;      // truth (C and J)
-  std::uint64_t kept_objects = 0, submitted_triangles = 0;       // the culler's
+  // Sizes of sets. An object is kept if any of its triangles is; visible if any sample of C or J,
+  // disputed or not, hits it.
+  std::uint64_t visible_objects = 0, visible_triangles = 0;          // truth
+  std::uint64_t kept_objects = 0, submitted_triangles = 0;           // the culler's
   std::uint64_t over_objects_count = 0, over_triangles_count = 0;    // kept but invisible
   std::uint64_t under_objects_count = 0, under_triangles_count = 0;  // visible but left out
-  std::uint64_t scene_objects = 0, scene_triangles = 0;          // shown
-  /// Where samples were lost wrongly, worst object or triangle first; at most 64. Pixel positions.
+  std::uint64_t scene_objects = 0, scene_triangles = 0;              // shown
+  /// Where samples of C were lost wrongly, pixel x and y, the worst object's or triangle's first;
+  /// at most 64.
   std::vector<std::array<std::uint16_t, 2>> wrong_px;
 
   friend bool operator==(const Verdict&, const Verdict&) = default;
 };
 
-/// Judges a set. `caster` must have traced `frame` last only if the set loses samples; it is called
-/// for those alone. `granularity` says whether max_false_px is over objects or triangles.
-Verdict judge_set(const Frame& frame, const Scene& scene, const FrameTruth& truth,
-                  const VisibleSet& kept, Granularity granularity, RayCaster& caster);
+/// Judges a set. A lost sample whose triangle is A is disputed if is_disputed() says so of A and
+/// the first triangle that is hit there among the kept ones. `caster` is that of the truth; it is
+/// called only if the set loses samples. `granularity` says whether max_false_px is over objects or
+/// triangles. O(visible + runs of the set), plus the tracing of what is lost.
+Verdict judge_set(const Frame& frame, const FrameTruth& truth, const VisibleSet& kept,
+                  Granularity granularity, RayCaster& caster);
 
 /// The judge's verdict on an image.
 struct ImageVerdict {
-  std::uint64_t image_px = 0;          // undisputed ids that differ from the unculled image
-  std::uint64_t disputed_image_px = 0; // disputed ids that differ
+  std::uint64_t image_px = 0;           // undisputed ids that differ from the unculled image
+  std::uint64_t disputed_image_px = 0;  // disputed ids that differ
   friend bool operator==(const ImageVerdict&, const ImageVerdict&) = default;
 };
 
 /// A row of the table of metrics.
 struct Metric {
+  enum class Better { lower, higher, neither };
+
   std::string_view name;
   std::string_view unit;
-  enum class Better { lower, higher, neither } better;
+  Better better;
   std::string_view meaning;
 };
 

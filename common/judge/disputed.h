@@ -1,0 +1,25 @@
+// Which single samples are excused: where rays and rasteriser, or two triangles of one surface, may
+// rightly differ.
+#pragma once
+
+#include "common/judge/window_triangle.h"
+#include "common/scene/frame.h"
+
+namespace vislab {
+
+/// A sample nearer than this to an edge of a triangle may fall on either side of it, pixels.
+inline constexpr double disputed_edge_px = 1.0 / 128.0;
+/// Two depths that differ by less than this, relative to the larger, may come in either order.
+inline constexpr double disputed_relative_depth = 1e-4;
+
+/// Why a differing sample is excused: it lies within 1/128 pixel of an edge of either triangle
+/// (edges that the near or the far plane cuts included), or both triangles cover it at depths that
+/// differ by less than 1e-4 relative. `a` and `b` are triangles (none_id for background: only the
+/// other's edges count then). O(log objects).
+bool is_disputed(const Frame& frame, const Scene& scene, const glm::dvec2& window_px, TriangleId a,
+                 TriangleId b);
+
+/// A triangle of the scene as the frame shows it.
+WindowTriangle window_triangle(const Frame& frame, const Scene& scene, TriangleId triangle);
+
+}  // namespace vislab

@@ -1,0 +1,44 @@
+#include <array>
+
+#include "common/judge/metrics.h"
+
+namespace vislab {
+
+std::span<const Metric> metrics() {
+  using enum Metric::Better;
+  static constexpr std::array table = {
+      Metric{"false_px", "pixels", lower, "undisputed truth pixels whose triangle was left out"},
+      Metric{"max_false_px", "pixels", lower, "most false pixels on a single object or triangle"},
+      Metric{"false_objects", "count", lower,
+             "visible in truth and left out: all undisputed samples lost"},
+      Metric{"false_triangles", "count", lower,
+             "visible in truth and left out: at least one undisputed sample lost"},
+      Metric{"false_jittered", "samples", lower,
+             "undisputed jittered samples whose triangle was left out"},
+      Metric{"image_px", "pixels", lower, "undisputed ids that differ from the unculled image"},
+      Metric{"disputed_px", "pixels", neither,
+             "the error floor: pixels where rays and rasteriser may rightly differ"},
+      Metric{"over", "ratio", lower, "triangles kept but invisible / truly visible"},
+      Metric{"over_objects", "ratio", lower, "objects kept but invisible / truly visible"},
+      Metric{"under", "ratio", lower, "triangles visible but left out / truly visible"},
+      Metric{"recall", "ratio", higher, "culled / cullable by a perfect method of its kind"},
+      Metric{"flicker", "toggles per frame", lower,
+             "changes of an object's verdict that truth does not make"},
+      Metric{"pop", "pixel frames", lower, "pixels missing after the true appearance, summed"},
+      Metric{"latency", "frames", lower, "frames missing after the true appearance"},
+      Metric{"build_ms", "ms", lower, "preprocessing"},
+      Metric{"update_us", "us", lower, "per-frame update before the first cull"},
+      Metric{"cull_us", "us", lower, "deciding what to draw"},
+      Metric{"draw_ms", "ms", lower, "time inside calls of the device"},
+      Metric{"frame_ms", "ms", lower, "wall time from update until everything is drawn"},
+      Metric{"modelled_frame_ms", "ms", lower,
+             "test cost + submitted triangles * calibrated cost; not wall time"},
+      Metric{"bytes", "bytes", lower, "memory of what build made"},
+      Metric{"submitted_triangles", "count", lower, "triangles handed to the device"},
+      Metric{"efficiency", "ratio", higher,
+             "frame time of the oracle of the same level / frame time of the method, paired"},
+  };
+  return table;
+}
+
+}  // namespace vislab

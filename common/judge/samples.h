@@ -1,0 +1,89 @@
+// Where the samples of a frame lie, set C in the centres of the pixels and set J stratified and
+// jittered, and the rays through them. Both are made eight at a time, as the ray tracer takes them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "common/geometry/camera.h"
+
+namespace vislab {
+
+/// Eight window positions, pixels.
+struct EightPositions {
+  std::array<double, 8> x;
+  std::array<double, 8> y;
+
+  glm::dvec2 operator[](std::size_t i) const { return {x[i], y[i]}; }
+};
+
+/// Packets are taken from tiles of 4 x 2 pixels. Tile (0, 0) holds pixel (0, 0) in its lower left
+/// corner; lanes count along x first. Tiles at the right and upper border may stick out.
+inline constexpr int tile_width = 4;
+inline constexpr int tile_height = 2;
+
+/// The centres of a tile's pixels.
+EightPositions pixel_centres(int tile_x, int tile_y);
+
+/// Sample set J: every pixel is divided into columns * rows strata, as near to squares as the
+/// number of samples allows, with one sample in each at a place that a hash of (seed, pixel,
+/// sample) gives. Any sample can be computed again, which is why truth need not keep them. Inside
+/// its stratum a sample lies at odd multiples of 2^-25 of the stratum's size, so never on an edge
+/// of a pixel.
+class JitteredSamples {
+ public:
+  /// `per_pixel` is at least 1.
+  JitteredSamples(const Viewport& viewport, int per_pixel, std::uint64_t seed);
+
+  /// A tile has 8 * packets_per_tile() samples, those of one pixel after the other.
+  int packets_per_tile() const { return per_pixel_; }
+  EightPositions packet(int tile_x, int tile_y, int packet) const;
+  /// Which of the tile's eight pixels sample `lane` of a packet lies in.
+  int pixel_of(int packet, int lane) const { return (packet * 8 + lane) / per_pixel_; }
+
+ private:
+  struct Stratum {
+    double x, y;           // lower left corner, pixels from the tile's
+    std::uint64_t number;  // counted along the image from the tile's first sample
+  };
+
+  int per_pixel_;
+  std::uint64_t start_;
+  std::uint64_t samples_in_row_;  // of pixels
+  double jitter_x_;               // pixels in a step of the jitter
+  double jitter_y_;
+  std::vector<Stratum> strata_;  // of a tile
+};
+
+/// Rays of a camera: float, relative to a scene's origin, with a direction of length 1 along the
+/// view, so that distances along a ray are planar. Computed in double from the window position and
+/// rounded once.
+class RayMaker {
+ public:
+  RayMaker(const Camera& camera, const Viewport& viewport, const glm::dvec3& scene_origin);
+
+  bool orthographic() const { return orthographic_; }
+  /// The origin of all rays of a perspective camera, the direction of all of an orthographic one.
+  glm::vec3 common() const { return common_; }
+  /// The other vector, of eight rays: eight values behind each pointer.
+  void vary(const EightPositions& window_px, float* x, float* y, float* z) const;
+
+  /// Distances along every ray. Planar depth is depth_offset() + distance.
+  float near_distance() const { return near_distance_; }
+  float far_distance() const { return far_distance_; }
+  double depth_offset() const { return depth_offset_; }
+
+ private:
+  bool orthographic_;
+  glm::vec3 common_;
+  glm::dvec3 corner_;  // the varying vector at window position (0, 0)
+  glm::dvec3 step_x_;  // what a pixel to the right adds to it
+  glm::dvec3 step_y_;
+  float near_distance_;
+  float far_distance_;
+  double depth_offset_;
+};
+
+}  // namespace vislab
