@@ -50,6 +50,7 @@ function(vislab_add_culler_family family)
   endforeach()
   vislab_add_library(${family} SOURCES ${files} PUBLIC vislab_culler PRIVATE ${ARG_LIBRARIES})
   set_property(GLOBAL APPEND PROPERTY VISLAB_CULLER_LIBRARIES vislab_${family})
+  set_property(GLOBAL APPEND PROPERTY VISLAB_CULLER_FAMILIES ${family})
 endfunction()
 
 # vislab_write_registry(): the library vislab_cullers, whose register_all_cullers(Registry&) adds every

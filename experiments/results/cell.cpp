@@ -101,6 +101,8 @@ std::string to_json(const ResultCell& cell) {
                   {"scene", cell.scene},
                   {"path", cell.path},
                   {"scene_description", cell.scene_description},
+                  {"scene_source", cell.scene_source},
+                  {"path_source", cell.path_source},
                   {"scene_objects", cell.scene_objects},
                   {"scene_triangles", cell.scene_triangles},
                   {"status", to_string(cell.status)},
@@ -132,6 +134,8 @@ ResultCell parse_cell(const std::string& text, const std::string& where) {
     cell.scene = j.at("scene");
     cell.path = j.at("path");
     cell.scene_description = j.at("scene_description");
+    cell.scene_source = j.at("scene_source");
+    cell.path_source = j.at("path_source");
     cell.scene_objects = j.at("scene_objects");
     cell.scene_triangles = j.at("scene_triangles");
     cell.status = from_name(j.at("status").get<std::string>(), statuses, where);

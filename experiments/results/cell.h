@@ -56,6 +56,8 @@ struct ResultCell {
   std::string scene;
   std::string path;
   std::string scene_description;
+  std::string scene_source;  // the name or file that the scene was loaded by
+  std::string path_source;   // likewise; "" = the scene's own path
   std::uint64_t scene_objects = 0, scene_triangles = 0;
 
   enum class Status { running, done, failed } status = Status::running;

@@ -1,0 +1,65 @@
+#include "experiments/run/block_judge.h"
+
+#include <map>
+#include <memory>
+
+#include "common/judge/image_judge.h"
+#include "experiments/context/sources.h"
+#include "experiments/run/path_run.h"
+
+namespace vislab {
+
+void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene, const Path& path,
+                 const Viewport& viewport, const PathTruth& truth, RayCaster& caster, bool drawn,
+                 const ResultStore& store, Progress& progress) {
+  struct Pending {
+    const ResultCell* cell;
+    CellVerdicts verdicts;
+  };
+  std::vector<Pending> pending;
+  for (const ResultCell* cell : cells) {
+    const std::string id = cell->key.id();
+    if (cell->frames.size() == path.frames.size() &&
+        !store.load_verdicts(id, judge_source_hash())) {
+      pending.push_back({cell, {judge_source_hash(), {}, {}, 0, 0}});
+    }
+  }
+  if (pending.empty()) return;
+
+  const std::unique_ptr<ImageJudge> image = drawn ? std::make_unique<ImageJudge>(scene) : nullptr;
+  SceneState state(scene);
+  for_each_frame(path, state, viewport, [&](std::size_t index, Frame& frame, const Changes&) {
+    progress.step(
+        "judging frame " + std::to_string(index + 1) + " of " + std::to_string(path.frames.size()),
+        0.9 + 0.1 * static_cast<double>(index) / static_cast<double>(path.frames.size()));
+    const FrameTruth& seen = truth.frame(index);
+    ImageJudge::Floor floor;
+    if (image) {
+      image->start(frame);
+      floor = image->error_floor(frame, seen);
+    }
+    std::map<std::string, VisibleSet> sets;
+    std::map<std::pair<std::string, Granularity>, Verdict> verdicts;
+    std::map<std::string, ImageVerdict> images;
+    for (Pending& entry : pending) {
+      const std::string& hash = entry.cell->frames[index].set;
+      const Granularity granularity = entry.cell->granularity;
+      if (!sets.contains(hash)) sets.emplace(hash, store.load_set(hash));
+      const VisibleSet& set = sets.at(hash);
+      const std::pair key(hash, granularity);
+      if (!verdicts.contains(key)) {
+        verdicts.emplace(key, judge_set(frame, scene, seen, set, granularity, caster));
+      }
+      entry.verdicts.frames.push_back(verdicts.at(key));
+      if (image) {
+        if (!images.contains(hash)) images.emplace(hash, image->judge(frame, set));
+        entry.verdicts.images.push_back(images.at(hash));
+      }
+      entry.verdicts.floor_disputed_px += floor.disputed_px;
+      entry.verdicts.floor_undisputed_px += floor.undisputed_px;
+    }
+  });
+  for (const Pending& entry : pending) store.save_verdicts(entry.cell->key.id(), entry.verdicts);
+}
+
+}  // namespace vislab

@@ -1,0 +1,46 @@
+// Runs one block: truth, timed rounds over all its cells, verdicts.
+#pragma once
+
+#include <csignal>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "common/culler/registry.h"
+#include "common/scene/library.h"
+#include "experiments/matrix/matrix.h"
+#include "experiments/run/progress.h"
+
+namespace vislab {
+
+struct RunSettings {
+  DataFolders folders;
+  std::filesystem::path repository;  // for the revision in the context
+  std::filesystem::path results;
+  std::string filter;         // only chains (short or canonical) that contain it; "" = all
+  bool force = false;         // measure again what is done
+  bool retry_failed = false;  // try failed cells again
+};
+
+struct BlockOutcome {
+  int measured = 0;  // cells that got new rounds
+  int present = 0;   // cells that were done before
+  int failed = 0;    // failed now or before
+  bool stopped = false;
+};
+
+/// Tells a supervisor what runs, so that a crash or a hang can be put down to a cell.
+struct CellWatch {
+  std::function<void(const std::string& cell_id, double timeout_s)> begin;
+  std::function<void()> end;
+};
+
+/// Cells that are done are left alone; the others get the rounds that are missing, interleaved with
+/// the block's anchors in shuffled order, and are saved after each pass. A cell that fails is
+/// stored with its reason. `stop` ends the run after the present pass. Throws InputError for
+/// scenes, paths and results that are wrong.
+BlockOutcome run_block(const Block& block, const RunSettings& settings, const Registry& registry,
+                       Progress& progress, const CellWatch& watch,
+                       const volatile std::sig_atomic_t& stop);
+
+}  // namespace vislab

@@ -1,0 +1,29 @@
+// Runs matrices block by block, each in a process of its own.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/run/block_runner.h"
+
+namespace vislab {
+
+struct RunOptions {
+  RunSettings settings;
+  int shard = 1, shards = 1;  // this run takes blocks shard, shard + shards, … (counted from 1)
+  bool quiet = false;
+};
+
+struct RunOutcome {
+  int measured = 0, present = 0, failed = 0;  // cells
+  bool stopped = false;                       // by Ctrl-C
+  std::vector<std::string> errors;            // of blocks whose input was wrong
+};
+
+/// Each block runs in a child process: its memory is given back, a crash or a hang of a cell is put
+/// down to that cell and the block goes on without it. To be called before the process has started
+/// threads. Ctrl-C lets the present pass end; everything measured is kept.
+RunOutcome run_blocks(const std::vector<Block>& blocks, const RunOptions& options,
+                      const Registry& registry);
+
+}  // namespace vislab

@@ -1,0 +1,58 @@
+#include "experiments/run/path_run.h"
+
+#include <chrono>
+
+namespace vislab {
+
+PathRun run_path(ICuller& culler, const Scene& scene, const Path& path, const Viewport& viewport,
+                 std::uint64_t seed, SceneState& state, TimedDevice* device) {
+  using Clock = std::chrono::steady_clock;
+  using Milliseconds = std::chrono::duration<double, std::milli>;
+  PathRun run;
+  FrameSink sink;
+  Counters before = culler.counters();
+  double last_frame_ms = 0.0;
+  culler.reset(seed);
+  for_each_frame(path, state, viewport, [&](std::size_t, Frame& frame, const Changes& changes) {
+    frame.last_frame_ms = last_frame_ms;
+    sink.start(scene, frame, device);
+    if (device != nullptr) device->reset_clock();
+
+    const auto start = Clock::now();
+    if (device != nullptr) device->begin_frame(frame);
+    const auto begun = Clock::now();
+    culler.update(frame, changes);
+    const auto updated = Clock::now();
+    const double device_before_ms = device != nullptr ? device->milliseconds() : 0.0;
+    culler.cull(frame, Candidates::everything(), sink);
+    const auto culled = Clock::now();
+    const double device_after_ms = device != nullptr ? device->milliseconds() : 0.0;
+    sink.draw_rest();
+    if (device != nullptr) device->finish();
+    const auto end = Clock::now();
+    sink.record_rest();
+
+    last_frame_ms = Milliseconds(end - start).count();
+    run.round.frame_ms.push_back(last_frame_ms);
+    run.round.update_us.push_back(1e3 * Milliseconds(updated - begun).count());
+    run.round.cull_us.push_back(
+        1e3 * (Milliseconds(culled - updated).count() - (device_after_ms - device_before_ms)));
+    run.round.draw_ms.push_back(device != nullptr ? device->milliseconds() : 0.0);
+
+    VisibleSet set = sink.recording().set();
+    CellFrame answer;
+    answer.set = set.hash();
+    answer.submitted_triangles = set.triangle_count();
+    Counters after = culler.counters();
+    for (std::size_t k = 0; k < after.size(); ++k) {
+      const std::uint64_t old = k < before.size() ? before[k].second : 0;
+      answer.counters[std::string(after[k].first)] = after[k].second - old;
+    }
+    before = std::move(after);
+    run.frames.push_back(std::move(answer));
+    run.sets.push_back(std::move(set));
+  });
+  return run;
+}
+
+}  // namespace vislab

@@ -1,0 +1,45 @@
+// One culler over one path, once: times, sets and counters of every frame.
+#pragma once
+
+#include <vector>
+
+#include "common/culler/culler.h"
+#include "common/culler/visible_set.h"
+#include "common/scene/path.h"
+#include "experiments/results/cell.h"
+#include "experiments/run/frame_sink.h"
+#include "experiments/run/timed_device.h"
+
+namespace vislab {
+
+/// Calls visit(index, frame, changes) for every frame of a path, with the scene's state moved
+/// along.
+template <typename Function>
+void for_each_frame(const Path& path, SceneState& state, const Viewport& viewport,
+                    Function&& visit) {
+  state.reset();
+  for (std::size_t i = 0; i < path.frames.size(); ++i) {
+    state.apply(path.frames[i].changes);
+    Frame frame;
+    frame.index = i;
+    frame.camera = path.frames[i].camera;
+    frame.viewport = viewport;
+    frame.objects = state.view();
+    visit(i, frame, path.frames[i].changes);
+  }
+}
+
+/// What a pass over a path gives.
+struct PathRun {
+  Round round;                    // session and number left empty
+  std::vector<VisibleSet> sets;   // by frame
+  std::vector<CellFrame> frames;  // hash, size and counters; truth left empty
+};
+
+/// Resets the culler and runs it over the path. `device` may be null: nothing is drawn.
+/// frame_ms is wall time from update to the device's finish; draw_ms the time inside device calls;
+/// cull_us that of cull() without them.
+PathRun run_path(ICuller& culler, const Scene& scene, const Path& path, const Viewport& viewport,
+                 std::uint64_t seed, SceneState& state, TimedDevice* device);
+
+}  // namespace vislab

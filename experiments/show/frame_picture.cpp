@@ -1,0 +1,121 @@
+#include "experiments/show/frame_picture.h"
+
+#include <algorithm>
+
+#include "common/render/picture.h"
+#include "common/scene/error.h"
+#include "experiments/context/sources.h"
+#include "experiments/run/path_run.h"
+
+namespace vislab {
+namespace {
+
+TriangleClass class_of(bool kept, bool visible) {
+  if (kept) return visible ? TriangleClass::kept_visible : TriangleClass::kept_invisible;
+  return visible ? TriangleClass::culled_wrongly : TriangleClass::culled_rightly;
+}
+
+/// Marks the triangles of a set.
+std::vector<std::uint8_t> flags_of(const VisibleSet& set, std::size_t triangles) {
+  std::vector<std::uint8_t> flags(triangles, 0);
+  for (const VisibleSet::Run& run : set.runs()) {
+    std::fill_n(flags.begin() + run.first, run.count, std::uint8_t{1});
+  }
+  return flags;
+}
+
+}  // namespace
+
+void write_frame_picture(const Scene& scene, const Frame& frame, const FrameTruth& truth,
+                         const VisibleSet& kept, const Verdict& verdict, Granularity granularity,
+                         const std::string& title, const std::filesystem::path& file) {
+  const std::vector<std::uint8_t> is_kept = flags_of(kept, scene.triangle_count());
+  std::vector<std::uint8_t> is_visible(scene.triangle_count(), 0);
+  for (const TriangleId triangle : truth.visible()) is_visible[triangle] = 1;
+
+  std::vector<TriangleClass> classes(scene.triangle_count(), TriangleClass::culled_rightly);
+  PictureInput input;
+  for (const ObjectId object : frame.objects.shown) {
+    const TriangleId first = scene.first_triangle(object);
+    const TriangleId end = first + scene.triangle_count(object);
+    if (granularity == Granularity::object) {
+      const auto any = [&](const std::vector<std::uint8_t>& flags) {
+        return std::find(flags.begin() + first, flags.begin() + end, 1) != flags.begin() + end;
+      };
+      const TriangleClass whole = class_of(any(is_kept), any(is_visible));
+      std::fill(classes.begin() + first, classes.begin() + end, whole);
+      ++input.counts[static_cast<std::size_t>(whole)];
+    } else {
+      for (TriangleId triangle = first; triangle < end; ++triangle) {
+        classes[triangle] = class_of(is_kept[triangle] != 0, is_visible[triangle] != 0);
+        ++input.counts[static_cast<std::size_t>(classes[triangle])];
+      }
+    }
+  }
+  input.scene = &scene;
+  input.frame = &frame;
+  input.classes = classes;
+  input.title = title;
+  input.counted = granularity == Granularity::object ? "objects" : "triangles";
+  for (const auto& [x, y] : verdict.wrong_px) input.wrong_pixels.emplace_back(x, y);
+  write_png(file, render_picture(input));
+}
+
+struct StoredPictures::Loaded {
+  Scene scene;
+  Path path;
+};
+
+StoredPictures::StoredPictures(std::filesystem::path results, DataFolders folders)
+    : results_(std::move(results)), folders_(std::move(folders)) {}
+
+StoredPictures::~StoredPictures() = default;
+
+std::string StoredPictures::write(const BlockSummary& block, const CellSummary& cell,
+                                  const std::filesystem::path& file) {
+  const ResultStore store = ResultStore::open(results_);
+  const std::optional<ResultCell> stored = store.load_cell(cell.id);
+  const std::optional<CellVerdicts> verdicts = store.load_verdicts(cell.id, judge_source_hash());
+  if (!stored || !verdicts) throw InputError("cell " + cell.id + " has not been judged");
+
+  if (!loaded_ || loaded_->scene.content_hash() != block.scene_hash ||
+      loaded_->path.content_hash() != block.path_hash) {
+    LoadedScene loaded = load_scene(stored->scene_source, folders_);
+    loaded_ = std::make_unique<Loaded>();
+    loaded_->scene = std::move(loaded.scene);
+    loaded_->path =
+        load_path(stored->path_source.empty() ? loaded.default_path : stored->path_source,
+                  loaded_->scene, block.viewport, block.frames, folders_);
+    if (loaded_->scene.content_hash() != block.scene_hash ||
+        loaded_->path.content_hash() != block.path_hash) {
+      throw InputError("scene " + block.scene + " or its path has changed since it was measured");
+    }
+  }
+
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < verdicts->frames.size(); ++i) {
+    const Verdict& a = verdicts->frames[i];
+    const Verdict& b = verdicts->frames[best];
+    if (a.false_px != b.false_px ? a.false_px > b.false_px
+                                 : a.submitted_triangles < b.submitted_triangles) {
+      best = i;
+    }
+  }
+  const std::optional<FrameTruth> truth =
+      TruthStore(store.truth_folder()).load(stored->frames[best].truth);
+  if (!truth)
+    throw InputError("the truth of cell " + cell.id + " is missing; run the matrix again");
+
+  const std::string where = block.scene + ", " + cell.culler + ", frame " + std::to_string(best);
+  SceneState state(loaded_->scene);
+  for_each_frame(loaded_->path, state, block.viewport,
+                 [&](std::size_t index, const Frame& frame, const Changes&) {
+                   if (index != best) return;
+                   write_frame_picture(loaded_->scene, frame, *truth,
+                                       store.load_set(stored->frames[best].set),
+                                       verdicts->frames[best], cell.granularity, where, file);
+                 });
+  return where;
+}
+
+}  // namespace vislab

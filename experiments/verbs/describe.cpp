@@ -1,0 +1,139 @@
+#include <algorithm>
+#include <iostream>
+
+#include "common/judge/metrics.h"
+#include "common/scene/error.h"
+#include "experiments/matrix/matrix.h"
+#include "experiments/verbs/table.h"
+#include "experiments/verbs/verbs.h"
+
+namespace vislab {
+namespace {
+
+/// Facts of one thing: lines of "key: value", or one JSON object.
+class Facts {
+ public:
+  void add(const std::string& key, TableValue value) {
+    keys_.push_back(key);
+    values_.push_back(std::move(value));
+  }
+  void print(std::ostream& out, bool json) const {
+    if (json) {
+      Table table(keys_);
+      table.add(values_);
+      table.print_json(out);
+      return;
+    }
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+      Table line({keys_[i] + ":"});
+      line.add({values_[i]});
+      if (const auto* text = std::get_if<std::string>(&values_[i])) {
+        out << keys_[i] << ": " << *text << '\n';
+      } else {
+        line.print_text(out);
+      }
+    }
+  }
+
+ private:
+  std::vector<std::string> keys_;
+  std::vector<TableValue> values_;
+};
+
+std::string joined(const std::vector<std::string>& parts, const std::string& separator) {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : separator) + part;
+  return text;
+}
+
+void describe_culler(const Registry& cullers, const std::string& chain, bool json) {
+  const std::unique_ptr<ICuller> culler = cullers.make(chain);
+  const CullerInfo& info = culler->info();
+  Facts facts;
+  facts.add("name", cullers.short_name(chain));
+  facts.add("family", info.family);
+  facts.add("summary", info.summary);
+  facts.add("guarantee", std::string(to_string(info.guarantee)));
+  facts.add("repeatability", std::string(to_string(info.repeatability)));
+  facts.add("granularity", std::string(to_string(info.granularity)));
+  facts.add("space", std::string(to_string(info.space)));
+  facts.add("stage", std::string(to_string(info.stage)));
+  facts.add("needs_device", std::string(info.needs_device ? "yes" : "no"));
+  facts.add("cost", info.cost);
+  facts.add("limits", info.limits);
+  facts.add("sources", joined(info.sources, "; "));
+  for (const ParameterSpec& parameter : info.parameters) {
+    facts.add("parameter " + parameter.name,
+              "default " + parameter.default_value +
+                  (parameter.unit.empty() ? "" : " " + parameter.unit) + "; " +
+                  parameter.allowed() + "; " +
+                  (parameter.stage == ParameterSpec::Stage::build ? "build" : "query") + "; " +
+                  parameter.meaning);
+  }
+  facts.print(std::cout, json);
+}
+
+void describe_scene(const Lab& lab, const std::string& name, bool json) {
+  const LoadedScene loaded = load_scene(name, lab.data);
+  const Scene& scene = loaded.scene;
+  Facts facts;
+  facts.add("name", scene.name);
+  facts.add("description", loaded.description);
+  facts.add("default_path", loaded.default_path);
+  facts.add("objects", std::uint64_t{scene.object_count()});
+  facts.add("meshes", std::uint64_t{scene.meshes.size()});
+  facts.add("triangles", std::uint64_t{scene.triangle_count()});
+  facts.add("cells", std::uint64_t{scene.cells.size()});
+  facts.add("portals", std::uint64_t{scene.portals.size()});
+  facts.add("open_meshes", std::uint64_t{scene.report.open_meshes});
+  facts.add("zero_area_triangles", std::uint64_t{scene.report.zero_area_triangles});
+  facts.add("unused_bad_vertices", std::uint64_t{scene.report.unused_bad_vertices});
+  const glm::dvec3 size = scene.bounds().half_size() * 2.0;
+  facts.add("width_m", size.x);
+  facts.add("height_m", size.y);
+  facts.add("depth_m", size.z);
+  facts.add("content_hash", scene.content_hash());
+  facts.print(std::cout, json);
+}
+
+bool describe_metric(const std::string& name, bool json) {
+  const auto metric = std::ranges::find(metrics(), name, &Metric::name);
+  if (metric == metrics().end()) return false;
+  Facts facts;
+  facts.add("name", name);
+  facts.add("unit", std::string(metric->unit));
+  facts.add("meaning", std::string(metric->meaning));
+  facts.print(std::cout, json);
+  return true;
+}
+
+}  // namespace
+
+int describe(const Lab& lab, const std::string& name, bool json) {
+  const std::string first = name.substr(0, name.find_first_of("[> "));
+  if (lab.cullers.entries().contains(first)) {
+    describe_culler(lab.cullers, name, json);
+    return 0;
+  }
+  const auto scenes = list_scenes(lab.data);
+  if (std::ranges::find(scenes, name, &SceneSummary::name) != scenes.end() ||
+      std::filesystem::exists(name)) {
+    describe_scene(lab, name, json);
+    return 0;
+  }
+  for (const auto& [matrix, description] : list_matrices(lab.matrices)) {
+    if (matrix != name) continue;
+    Facts facts;
+    facts.add("name", name);
+    facts.add("description", description);
+    facts.add("blocks", std::uint64_t{load_matrix(name, lab.matrices, lab.cullers).blocks.size()});
+    facts.print(std::cout, json);
+    return 0;
+  }
+  if (describe_metric(name, json)) return 0;
+  throw InputError(
+      "nothing is called '" + name +
+      "'; see 'vislab list cullers', 'list scenes', 'list matrices' and 'list metrics'");
+}
+
+}  // namespace vislab

@@ -1,0 +1,27 @@
+#include "experiments/verbs/present_results.h"
+
+#include "common/scene/error.h"
+#include "experiments/context/sources.h"
+#include "experiments/results/store.h"
+
+namespace vislab {
+
+std::vector<JudgedCell> present_cells(const std::filesystem::path& results,
+                                      const Registry& cullers) {
+  const ResultStore store = ResultStore::open(results);
+  std::vector<JudgedCell> present;
+  for (ResultCell& cell : store.load_all()) {
+    try {
+      // Parameters may have been added since: the canonical name is another then.
+      if (cullers.canonical(cell.key.chain) != cell.key.chain) continue;
+    } catch (const InputError&) {
+      continue;  // a culler that no longer exists
+    }
+    if (chain_source_hash(cell.key.chain) != cell.key.sources) continue;
+    std::optional<CellVerdicts> verdicts = store.load_verdicts(cell.key.id(), judge_source_hash());
+    present.push_back({std::move(cell), std::move(verdicts)});
+  }
+  return present;
+}
+
+}  // namespace vislab

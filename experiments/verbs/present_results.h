@@ -1,0 +1,17 @@
+// Stored results as the verbs look at them: only cells whose sources are those of this program.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "common/culler/registry.h"
+#include "experiments/analysis/summary.h"
+
+namespace vislab {
+
+/// Cells of the folder that were measured with the sources as they are now, with their verdicts.
+/// Throws InputError if there is no such folder or a cell is corrupt.
+std::vector<JudgedCell> present_cells(const std::filesystem::path& results,
+                                      const Registry& cullers);
+
+}  // namespace vislab

@@ -1,0 +1,125 @@
+#include <algorithm>
+#include <charconv>
+#include <iostream>
+#include <thread>
+
+#include "common/scene/error.h"
+#include "experiments/matrix/resolution.h"
+#include "experiments/run/matrix_runner.h"
+#include "experiments/verbs/present_results.h"
+#include "experiments/verbs/table.h"
+#include "experiments/verbs/verbs.h"
+
+namespace vislab {
+namespace {
+
+std::vector<Block> blocks_of(const Lab& lab, const RunCall& call) {
+  std::vector<Block> blocks;
+  if (!call.culler.empty()) {
+    Block block;
+    block.scene = call.scene;
+    block.path = call.path;
+    block.viewport = parse_resolution(call.resolution);
+    block.frames = call.frames;
+    block.rounds = call.rounds;
+    block.device = call.draw;
+    block.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    blocks = single_block(call.culler, block, lab.cullers).blocks;
+  }
+  for (const std::string& name : call.matrices) {
+    const Matrix matrix = load_matrix(name, lab.matrices, lab.cullers);
+    blocks.insert(blocks.end(), matrix.blocks.begin(), matrix.blocks.end());
+  }
+  if (call.threads > 0) {
+    for (Block& block : blocks) block.threads = call.threads;
+  }
+  return blocks;
+}
+
+/// "2/4" as {2, 4}.
+std::pair<int, int> parse_shard(const std::string& text) {
+  if (text.empty()) return {1, 1};
+  const auto slash = text.find('/');
+  int shard = 0;
+  int shards = 0;
+  if (slash != std::string::npos) {
+    std::from_chars(text.data(), text.data() + slash, shard);
+    std::from_chars(text.data() + slash + 1, text.data() + text.size(), shards);
+  }
+  if (shard < 1 || shards < shard) {
+    throw InputError("--shard '" + text + "' is not i/n with 1 <= i <= n, such as 1/4");
+  }
+  return {shard, shards};
+}
+
+/// The cells of these blocks' scenes, in the columns that a first look needs.
+void print_results(const Lab& lab, const RunCall& call, const std::vector<Block>& blocks) {
+  Table table({"scene", "culler", "status", "frame_ms", "against_none", "cull_us", "draw_ms",
+               "submitted_triangles", "over", "recall", "false_px", "pixels", "image_px",
+               "false_objects", "false_triangles", "disputed_px"});
+  for (const BlockSummary& block : summarise(present_cells(call.results, lab.cullers))) {
+    const auto asked = [&](const Block& b) {
+      return (b.scene == block.scene ||
+              std::filesystem::path(b.scene).stem().string() == block.scene) &&
+             b.viewport == block.viewport && b.threads == block.threads;
+    };
+    if (std::ranges::none_of(blocks, asked)) continue;
+    for (const CellSummary& cell : block.cells) {
+      const auto judged = [&](auto value) {
+        return cell.judged ? TableValue(value) : TableValue();
+      };
+      table.add({block.scene, cell.culler,
+                 cell.status == ResultCell::Status::failed ? "failed: " + cell.reason
+                                                           : to_string(cell.status),
+                 cell.frame_ms.median.value, cell.against_none.value, cell.cull_us.median.value,
+                 cell.draw_ms.median.value, cell.submitted_triangles, judged(cell.over),
+                 judged(cell.recall), judged(cell.false_px), judged(cell.pixels),
+                 cell.drawn ? judged(cell.image_px) : TableValue(), judged(cell.false_objects),
+                 judged(cell.false_triangles), judged(cell.disputed_px)});
+    }
+  }
+  table.print(std::cout, call.json);
+}
+
+}  // namespace
+
+int plan(const Lab& lab, const RunCall& call) {
+  Table table(
+      {"block", "scene", "path", "resolution", "frames", "rounds", "device", "threads", "culler"});
+  const std::vector<Block> blocks = blocks_of(lab, call);
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const Block& block = blocks[i];
+    for (const BlockCuller& culler : block.cullers) {
+      table.add({std::uint64_t{i + 1}, block.scene, block.path.empty() ? "default" : block.path,
+                 std::to_string(block.viewport.width) + "x" + std::to_string(block.viewport.height),
+                 static_cast<std::uint64_t>(block.frames), static_cast<std::uint64_t>(block.rounds),
+                 block.device, static_cast<std::uint64_t>(block.threads),
+                 lab.cullers.short_name(culler.chain) + (culler.replicate > 0 ? " (again)" : "")});
+    }
+  }
+  table.print(std::cout, call.json);
+  return 0;
+}
+
+int run(const Lab& lab, const RunCall& call) {
+  const std::vector<Block> blocks = blocks_of(lab, call);
+  RunOptions options;
+  options.settings = {lab.data,    lab.repository, call.results,
+                      call.filter, call.force,     call.retry_failed};
+  std::tie(options.shard, options.shards) = parse_shard(call.shard);
+  options.quiet = call.quiet;
+  const RunOutcome outcome = run_blocks(blocks, options, lab.cullers);
+  if (!outcome.errors.empty()) {
+    std::string all;
+    for (const std::string& error : outcome.errors) all += (all.empty() ? "" : "\n") + error;
+    throw InputError(all);
+  }
+  print_results(lab, call, blocks);
+  if (outcome.stopped) {
+    std::cerr << "stopped; the same call goes on from here\n";
+    return 1;
+  }
+  return outcome.failed > 0 ? 1 : 0;
+}
+
+}  // namespace vislab

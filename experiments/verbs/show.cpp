@@ -1,0 +1,61 @@
+#include <iostream>
+
+#include "common/judge/path_truth.h"
+#include "common/render/osmesa_device.h"
+#include "common/scene/error.h"
+#include "experiments/matrix/resolution.h"
+#include "experiments/run/path_run.h"
+#include "experiments/show/frame_picture.h"
+#include "experiments/verbs/verbs.h"
+
+namespace vislab {
+
+int show(const Lab& lab, const ShowCall& call) {
+  const std::unique_ptr<ICuller> culler = lab.cullers.make(call.culler);
+  const Viewport viewport = parse_resolution(call.resolution);
+  const LoadedScene loaded = load_scene(call.scene, lab.data);
+  const Scene& scene = loaded.scene;
+  Path path =
+      load_path(call.path.empty() ? loaded.default_path : call.path, scene, viewport, 0, lab.data);
+  const auto last = static_cast<std::size_t>(call.frame);
+  if (last >= path.frames.size()) {
+    throw InputError("--frame " + std::to_string(call.frame) + ": path " + path.name +
+                     " has frames 0 to " + std::to_string(path.frames.size() - 1));
+  }
+  // A culler may live on what it saw before: it is given the whole path up to the frame.
+  path.frames.resize(last + 1);
+
+  RayCaster caster(scene, {});
+  PathTruth truth(scene);
+  SceneState state(scene);
+  for_each_frame(path, state, viewport, [&](std::size_t index, const Frame& frame, const Changes&) {
+    const bool needed = index == last || culler->info().needs_truth;
+    truth.add(needed ? caster.trace(frame) : FrameTruth{});
+  });
+  OsMesaDevice device;
+  device.load(scene);
+  TimedDevice timed_device(device);
+  BuildContext context;
+  context.cullers = &lab.cullers;
+  context.truth = &truth;
+  context.device = &timed_device;
+  culler->build(scene, context);
+  const PathRun run = run_path(*culler, scene, path, viewport, 1, state, &timed_device);
+
+  Frame frame;
+  frame.index = last;
+  frame.camera = path.frames[last].camera;
+  frame.viewport = viewport;
+  frame.objects = state.view();
+  const Granularity granularity = culler->info().granularity;
+  const Verdict verdict =
+      judge_set(frame, scene, truth.frame(last), run.sets[last], granularity, caster);
+  write_frame_picture(
+      scene, frame, truth.frame(last), run.sets[last], verdict, granularity,
+      scene.name + ", " + lab.cullers.short_name(call.culler) + ", frame " + std::to_string(last),
+      call.output);
+  std::cerr << "wrote " << call.output.string() << '\n';
+  return 0;
+}
+
+}  // namespace vislab

@@ -1,0 +1,63 @@
+// What the verbs of the program do, apart from reading the command line. Each returns the exit
+// code: 0 done, 1 something checked failed; wrong input throws InputError (exit code 2).
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/culler/registry.h"
+#include "common/scene/library.h"
+
+namespace vislab {
+
+/// Where the lab's own files are, and all cullers.
+struct Lab {
+  Registry cullers;
+  DataFolders data;
+  std::filesystem::path repository;
+  std::filesystem::path matrices;
+  std::filesystem::path report;  // templates
+};
+
+/// `what` is cullers, scenes, matrices or metrics.
+int list(const Lab& lab, const std::string& what, bool json);
+/// `name` is a culler, a chain, a scene, a matrix or a metric.
+int describe(const Lab& lab, const std::string& name, bool json);
+
+struct RunCall {
+  std::vector<std::string> matrices;
+  // Instead of matrices: one culler on one scene.
+  std::string culler, scene, path;
+  std::string resolution = "512x512";
+  int frames = 0;  // 0 = as many as the path has
+  int rounds = 5;
+  std::string draw = "osmesa";
+  int threads = 0;  // 0 = as the matrix says, or all cores
+  std::string filter;
+  std::filesystem::path results;
+  std::string shard;  // "i/n"
+  bool force = false, retry_failed = false, json = false, quiet = false;
+};
+int plan(const Lab& lab, const RunCall& call);
+int run(const Lab& lab, const RunCall& call);
+
+struct ShowCall {
+  std::string culler, scene, path;
+  std::string resolution = "512x512";
+  int frame = 0;
+  std::filesystem::path output;
+};
+int show(const Lab& lab, const ShowCall& call);
+
+/// Two chains in every block of the results that has both.
+int compare(const Lab& lab, const std::string& a, const std::string& b,
+            const std::filesystem::path& results, bool json);
+/// All cells with all metrics; `format` is csv or json.
+int export_results(const Lab& lab, const std::string& format,
+                   const std::filesystem::path& results);
+int report(const Lab& lab, const std::filesystem::path& results,
+           const std::filesystem::path& output);
+int check(const Lab& lab, const std::string& culler, bool json);
+
+}  // namespace vislab

@@ -1,0 +1,183 @@
+// vislab: the command line of the lab. Reads the call and hands it to a verb (experiments/verbs).
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <exception>
+#include <functional>
+#include <iostream>
+
+#include "algorithms/all_cullers.h"
+#include "common/scene/error.h"
+#include "experiments/verbs/verbs.h"
+
+namespace {
+
+using namespace vislab;
+
+Lab make_lab() {
+  Lab lab;
+  register_all_cullers(lab.cullers);
+  lab.repository = VISLAB_SOURCE_DIR;
+  lab.data = {lab.repository / "data", lab.repository / "data" / "cache"};
+  lab.matrices = lab.repository / "experiments" / "matrices";
+  lab.report = lab.repository / "report";
+  return lab;
+}
+
+/// The verbs and what each does when it is called. `action` is set by the verb that was parsed.
+class CommandLine {
+ public:
+  CommandLine() {
+    run_.results = "out/results";
+    app_.require_subcommand(1);
+    add_list();
+    add_describe();
+    add_plan();
+    add_run();
+    add_show();
+    add_compare();
+    add_export();
+    add_report();
+    add_check();
+  }
+
+  /// The exit code.
+  int run(int argc, char** argv) {
+    try {
+      app_.parse(argc, argv);
+    } catch (const CLI::Success& success) {
+      return app_.exit(success);
+    } catch (const CLI::ParseError& error) {
+      app_.exit(error, std::cout, std::cerr);
+      return 2;
+    }
+    return action_();
+  }
+
+ private:
+  CLI::App* verb(const std::string& name, const std::string& meaning, std::function<int()> action) {
+    CLI::App* const sub = app_.add_subcommand(name, meaning);
+    sub->callback([this, action = std::move(action)] { action_ = action; });
+    return sub;
+  }
+  void add_json(CLI::App* sub) { sub->add_flag("--json", json_, "one JSON object a line"); }
+  void add_results(CLI::App* sub) {
+    sub->add_option("--results", run_.results, "folder of results")->capture_default_str();
+  }
+
+  void add_list() {
+    CLI::App* const sub = verb("list", "what there is: cullers, scenes, matrices or metrics",
+                               [this] { return list(lab_, name_, json_); });
+    sub->add_option("what", name_, "cullers, scenes, matrices or metrics")->default_val("cullers");
+    add_json(sub);
+  }
+  void add_describe() {
+    CLI::App* const sub = verb("describe", "a culler, a scene, a matrix or a metric in full",
+                               [this] { return describe(lab_, name_, json_); });
+    sub->add_option("name", name_)->required();
+    add_json(sub);
+  }
+  void add_plan() {
+    CLI::App* const sub = verb("plan", "the cells of matrices, without running them", [this] {
+      run_.json = json_;
+      return plan(lab_, run_);
+    });
+    sub->add_option("matrix", run_.matrices, "names or files")->required();
+    add_json(sub);
+  }
+  void add_run() {
+    CLI::App* const sub = verb("run", "measures matrices, or one culler on one scene", [this] {
+      run_.json = json_;
+      if (run_.matrices.empty() == run_.culler.empty() ||
+          run_.culler.empty() != run_.scene.empty()) {
+        throw InputError("run takes matrices, or --culler and --scene together");
+      }
+      return vislab::run(lab_, run_);
+    });
+    sub->add_option("matrix", run_.matrices, "names or files");
+    sub->add_option("--culler", run_.culler, "a culler or a chain: 'a[x=1] > b'");
+    sub->add_option("--scene", run_.scene, "name, description, mesh or Quake III world");
+    sub->add_option("--path", run_.path,
+                    "name or file of a camera path; fitted to the scene if not given");
+    sub->add_option("--resolution", run_.resolution, "with --culler")->capture_default_str();
+    sub->add_option("--frames", run_.frames, "with --culler; 0 = as many as the path has")
+        ->check(CLI::Range(0, 100000));
+    sub->add_option("--rounds", run_.rounds, "with --culler")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    sub->add_option("--draw", run_.draw, "with --culler: osmesa or none")
+        ->check(CLI::IsMember({"osmesa", "none"}))
+        ->capture_default_str();
+    sub->add_option("--threads", run_.threads, "0 = as the matrix says")
+        ->check(CLI::Range(0, 1024));
+    sub->add_option("--filter", run_.filter, "only chains that contain this text");
+    sub->add_option("--shard", run_.shard, "i/n: every n-th block, from the i-th");
+    sub->add_flag("--force", run_.force, "measure again what is done");
+    sub->add_flag("--retry-failed", run_.retry_failed, "measure failed cells again");
+    sub->add_flag("--quiet", run_.quiet, "no progress");
+    add_results(sub);
+    add_json(sub);
+  }
+  void add_show() {
+    CLI::App* const sub = verb("show", "a picture of a frame: from the eye and from outside",
+                               [this] { return show(lab_, show_); });
+    sub->add_option("--culler", show_.culler)->required();
+    sub->add_option("--scene", show_.scene)->required();
+    sub->add_option("--path", show_.path, "name or file of a camera path");
+    sub->add_option("--frame", show_.frame)->check(CLI::NonNegativeNumber)->capture_default_str();
+    sub->add_option("--resolution", show_.resolution)->capture_default_str();
+    sub->add_option("-o,--output", show_.output, "PNG file")->required();
+  }
+  void add_compare() {
+    CLI::App* const sub =
+        verb("compare", "two chains in all blocks that have both: frame time of A over B",
+             [this] { return compare(lab_, name_, other_, run_.results, json_); });
+    sub->add_option("a", name_)->required();
+    sub->add_option("b", other_)->required();
+    add_results(sub);
+    add_json(sub);
+  }
+  void add_export() {
+    CLI::App* const sub = verb("export", "all cells with all metrics",
+                               [this] { return export_results(lab_, name_, run_.results); });
+    sub->add_option("format", name_, "csv or json")->required();
+    add_results(sub);
+  }
+  void add_report() {
+    CLI::App* const sub = verb("report", "writes index.html and report.pdf",
+                               [this] { return report(lab_, run_.results, report_folder_); });
+    sub->add_option("-o,--output", report_folder_, "folder")->capture_default_str();
+    add_results(sub);
+  }
+  void add_check() {
+    CLI::App* const sub = verb("check", "contract tests on one culler or chain",
+                               [this] { return check(lab_, name_, json_); });
+    sub->add_option("--culler", name_)->required();
+    add_json(sub);
+  }
+
+  Lab lab_ = make_lab();
+  CLI::App app_{
+      "vislab: runs visibility algorithms on the same scenes, judges each against rays, and "
+      "charts speed against accuracy"};
+  std::function<int()> action_;
+  std::string name_, other_;
+  bool json_ = false;
+  RunCall run_;
+  ShowCall show_;
+  std::filesystem::path report_folder_ = "out/report";
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    CommandLine command_line;
+    return command_line.run(argc, argv);
+  } catch (const InputError& error) {
+    std::cerr << "vislab: " << error.what() << '\n';
+    return 2;
+  } catch (const std::exception& error) {
+    std::cerr << "vislab: " << error.what() << '\n';
+    return 1;
+  }
+}
