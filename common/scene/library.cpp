@@ -80,14 +80,15 @@ LoadedScene load_described(const std::filesystem::path& file, const DataFolders&
   loaded.scene = std::visit(Maker(description, folders), description.source);
   loaded.scene.name = description.name;
   loaded.default_path = description.default_path;
+  loaded.description = description.description;
   return loaded;
 }
 
 LoadedScene load_file(const std::filesystem::path& file, const DataFolders& folders) {
   require_file(file);
   if (file.extension() == ".toml") return load_described(file, folders);
-  if (file.extension() == ".bsp") return {import_quake_world(file), ""};
-  return {import_mesh_file(file), ""};
+  if (file.extension() == ".bsp") return {import_quake_world(file), "", ""};
+  return {import_mesh_file(file), "", ""};
 }
 
 }  // namespace

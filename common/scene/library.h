@@ -31,6 +31,7 @@ std::vector<SceneSummary> list_scenes(const DataFolders& folders);
 struct LoadedScene {
   Scene scene;
   std::string default_path;
+  std::string description;  // one sentence; "" for bare meshes and worlds
 };
 
 /// Throws InputError that says what is wrong, where, and what would be right; a package that is not

@@ -13,9 +13,11 @@ constexpr double half_depth_m = 5.0;
 constexpr double half_door_m = 1.0;
 constexpr double door_height_m = 2.5;
 constexpr double room_height_m = 5.0;
+constexpr double half_wall_m = 0.1;
 
-/// Points of the ring by partition, radius and height. Rooms share them exactly: walls, floors and
-/// doors are cut along the same lines, so that neither rays nor pixels find a gap.
+/// Points of the ring by partition, side of the partition, radius and height. Rooms share them
+/// exactly: walls, floors and doors are cut along the same lines, so that neither rays nor pixels
+/// find a gap.
 class Ring {
  public:
   explicit Ring(std::uint32_t rooms)
@@ -28,10 +30,13 @@ class Ring {
     return {radius_ - half_depth_m, radius_ - half_door_m, radius_ + half_door_m,
             radius_ + half_depth_m};
   }
-  /// Angles run counter-clockwise seen from above; partition k is between rooms k - 1 and k.
-  glm::vec3 point(std::uint32_t partition, double radius, double height) const {
+  /// Angles run counter-clockwise seen from above. Partition k is between rooms k - 1 (side -1) and
+  /// k (side +1); side 0 is within the wall.
+  glm::vec3 point(std::uint32_t partition, int side, double radius, double height) const {
     const double angle = 2.0 * half_angle() * (partition % rooms_);
-    return {radius * std::cos(angle), height, -radius * std::sin(angle)};
+    const double onward = side * half_wall_m;
+    return {radius * std::cos(angle) - onward * std::sin(angle), height,
+            -radius * std::sin(angle) - onward * std::cos(angle)};
   }
 
  private:
@@ -65,41 +70,55 @@ class QuadMesh {
   }
 };
 
-/// A piece of partition k, counter-clockwise seen from room k - 1.
-Quad partition_quad(const Ring& ring, std::uint32_t k, double r0, double r1, double y0, double y1) {
-  return {ring.point(k, r0, y0), ring.point(k, r1, y0), ring.point(k, r1, y1),
-          ring.point(k, r0, y1)};
+/// A piece of one side of partition k, counter-clockwise seen from room k - 1.
+Quad partition_quad(const Ring& ring, std::uint32_t k, int side, double r0, double r1, double y0,
+                    double y1) {
+  return {ring.point(k, side, r0, y0), ring.point(k, side, r1, y0), ring.point(k, side, r1, y1),
+          ring.point(k, side, r0, y1)};
 }
 
+/// A piece of floor between two radii, from one side of a partition to another, seen from above.
+Quad floor_quad(const Ring& ring, std::uint32_t k0, int side0, std::uint32_t k1, int side1,
+                double r0, double r1, double y) {
+  return {ring.point(k0, side0, r0, y), ring.point(k0, side0, r1, y), ring.point(k1, side1, r1, y),
+          ring.point(k1, side1, r0, y)};
+}
+
+/// An upright piece at a radius, seen from farther out.
+Quad upright_quad(const Ring& ring, std::uint32_t k0, int side0, std::uint32_t k1, int side1,
+                  double r, double y0, double y1) {
+  return {ring.point(k0, side0, r, y0), ring.point(k1, side1, r, y0), ring.point(k1, side1, r, y1),
+          ring.point(k0, side0, r, y1)};
+}
+
+/// The room's walls, floor and ceiling, and the passage through the wall to the next room.
 Mesh room_mesh(const Ring& ring, std::uint32_t k) {
   const std::array<double, 4> radii = ring.radii();
   const std::array<double, 3> heights{0.0, door_height_m, room_height_m};
   QuadMesh room;
-  room.mesh.name = "room " + std::to_string(k);
+  room.mesh.name = std::string("room ").append(std::to_string(k));
   for (std::size_t i = 0; i < 3; ++i) {
+    const double r0 = radii[i];
+    const double r1 = radii[i + 1];
     for (std::size_t j = 0; j < 2; ++j) {
       if (i == 1 && j == 0) continue;  // the door
-      const auto piece = [&](std::uint32_t partition) {
-        return partition_quad(ring, partition, radii[i], radii[i + 1], heights[j], heights[j + 1]);
-      };
-      room.add(turned_round(piece(k)));
-      room.add(piece(k + 1));
+      room.add(turned_round(partition_quad(ring, k, 1, r0, r1, heights[j], heights[j + 1])));
+      room.add(partition_quad(ring, k + 1, -1, r0, r1, heights[j], heights[j + 1]));
     }
-    const auto level = [&](double y) {
-      return Quad{ring.point(k, radii[i], y), ring.point(k, radii[i + 1], y),
-                  ring.point(k + 1, radii[i + 1], y), ring.point(k + 1, radii[i], y)};
-    };
-    room.add(level(0.0));
-    room.add(turned_round(level(room_height_m)));
+    room.add(floor_quad(ring, k, 1, k + 1, -1, r0, r1, 0.0));
+    room.add(turned_round(floor_quad(ring, k, 1, k + 1, -1, r0, r1, room_height_m)));
   }
   for (std::size_t j = 0; j < 2; ++j) {
-    const auto wall = [&](double r) {
-      return Quad{ring.point(k, r, heights[j]), ring.point(k + 1, r, heights[j]),
-                  ring.point(k + 1, r, heights[j + 1]), ring.point(k, r, heights[j + 1])};
-    };
-    room.add(wall(radii[0]));
-    room.add(turned_round(wall(radii[3])));
+    const double y0 = heights[j];
+    const double y1 = heights[j + 1];
+    room.add(upright_quad(ring, k, 1, k + 1, -1, radii[0], y0, y1));
+    room.add(turned_round(upright_quad(ring, k, 1, k + 1, -1, radii[3], y0, y1)));
   }
+  const std::uint32_t next = k + 1;
+  room.add(floor_quad(ring, next, -1, next, 1, radii[1], radii[2], 0.0));
+  room.add(turned_round(floor_quad(ring, next, -1, next, 1, radii[1], radii[2], door_height_m)));
+  room.add(upright_quad(ring, next, -1, next, 1, radii[1], 0.0, door_height_m));
+  room.add(turned_round(upright_quad(ring, next, -1, next, 1, radii[2], 0.0, door_height_m)));
   return room.mesh;
 }
 
@@ -138,7 +157,7 @@ Scene make_room_ring(const RoomRingParameters& parameters) {
   const std::array<double, 4> radii = ring.radii();
   for (std::uint32_t k = 0; k < parameters.rooms; ++k) {
     const std::uint32_t next = (k + 1) % parameters.rooms;
-    const Quad door = partition_quad(ring, next, radii[1], radii[2], 0.0, door_height_m);
+    const Quad door = partition_quad(ring, next, 0, radii[1], radii[2], 0.0, door_height_m);
     const Quad back = turned_round(door);
     scene.portals.push_back({{door.begin(), door.end()}, k, next});
     scene.portals.push_back({{back.begin(), back.end()}, next, k});
