@@ -4,25 +4,12 @@
 #include <array>
 #include <stdexcept>
 
+#include "common/render/gl_camera.h"
 #include "common/render/gl_scene.h"
 #include "common/scene/error.h"
 
 namespace vislab {
 namespace {
-
-/// World to clip space, shared by every program. `precise` and the same expression everywhere give
-/// the same depth bits whichever program draws. The eye comes as a sum of two floats, so that the
-/// subtraction is as good as in double.
-const char* const camera_source = R"(#version 450 core
-layout(location = 0) uniform vec3 eye_high;
-layout(location = 1) uniform vec3 eye_low;
-layout(location = 2) uniform mat4 clip_from_rotated;
-vec4 clip_position(vec3 world) {
-  precise vec3 from_eye = (world - eye_high) - eye_low;
-  precise vec4 position = clip_from_rotated * vec4(from_eye, 1.0);
-  return position;
-}
-)";
 
 const char* const object_vertex_source = R"(
 layout(location = 0) in vec3 position;
@@ -97,7 +84,6 @@ class OsMesaDevice::Implementation {
   void make_programs();
   void make_box_array(const GlFunctions& gl);
   void resize(const GlFunctions& gl, const Viewport& viewport);
-  void set_camera(const GlFunctions& gl, const Camera& camera);
   void select(const GlFunctions& gl, ProgramName program);
   void require_frame() const;
   GLuint query_name(QueryId query) const;
@@ -154,7 +140,7 @@ OsMesaDevice::Implementation::~Implementation() {
 }
 
 void OsMesaDevice::Implementation::make_programs() {
-  const std::string camera = camera_source;
+  const std::string camera = camera_shader_source;
   programs_[object_program] =
       context_.program(camera + object_vertex_source, object_fragment_source);
   programs_[triangle_program] =
@@ -187,7 +173,9 @@ void OsMesaDevice::Implementation::begin_frame(const Frame& frame) {
   }
   const GlFunctions& gl = context_.make_current();
   if (frame.viewport != viewport_) resize(gl, frame.viewport);
-  set_camera(gl, frame.camera);
+  for (const GLuint program : programs_) {
+    set_camera(gl, program, frame.camera, scene_.scene()->origin());
+  }
   scene_.update_transforms(frame.objects.transforms);
 
   gl.DepthMask(GL_TRUE);
@@ -227,20 +215,6 @@ void OsMesaDevice::Implementation::resize(const GlFunctions& gl, const Viewport&
   }
   gl.Viewport(0, 0, viewport.width, viewport.height);
   viewport_ = viewport;
-}
-
-void OsMesaDevice::Implementation::set_camera(const GlFunctions& gl, const Camera& camera) {
-  Camera at_origin = camera;
-  at_origin.pose.eye = glm::dvec3(0.0);
-  const glm::mat4 clip(at_origin.view_projection());
-  const glm::dvec3 eye = camera.pose.eye - scene_.scene()->origin();
-  const glm::vec3 high(eye);
-  const glm::vec3 low(eye - glm::dvec3(high));
-  for (const GLuint program : programs_) {
-    gl.ProgramUniform3fv(program, 0, 1, &high.x);
-    gl.ProgramUniform3fv(program, 1, 1, &low.x);
-    gl.ProgramUniformMatrix4fv(program, 2, 1, GL_FALSE, &clip[0].x);
-  }
 }
 
 void OsMesaDevice::Implementation::require_frame() const {

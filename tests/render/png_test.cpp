@@ -1,0 +1,63 @@
+#include "common/render/png.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+
+#include "common/scene/error.h"
+
+namespace vislab {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Png : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / (std::string("vislab_png_") + info->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::size_t files() const {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+  }
+
+  fs::path folder_;
+  Image image_{3, 2, {255, 0, 0, 0, 255, 0, 0, 0, 255, 1, 2, 3, 4, 5, 6, 7, 8, 9}};
+};
+
+TEST_F(Png, ReadsBackWhatItWrote) {
+  write_png(folder_ / "a.png", image_);
+  EXPECT_EQ(read_png(folder_ / "a.png"), image_);
+  EXPECT_EQ(files(), 1U) << "no temporary file may stay";
+}
+
+TEST_F(Png, NamesThePathThatCannotBeWritten) {
+  const fs::path path = folder_ / "missing" / "a.png";
+  try {
+    write_png(path, image_);
+    FAIL() << "nothing was thrown";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(path.string()), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(Png, LeavesNothingBehindWhenThePathIsAFolder) {
+  fs::create_directories(folder_ / "a.png" / "inside");
+  EXPECT_THROW(write_png(folder_ / "a.png", image_), InputError);
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(Png, RefusesFilesThatAreNoPictures) {
+  EXPECT_THROW(read_png(folder_ / "missing.png"), InputError);
+  std::ofstream(folder_ / "text.png") << "not a picture";
+  EXPECT_THROW(read_png(folder_ / "text.png"), InputError);
+}
+
+}  // namespace
+}  // namespace vislab
