@@ -81,7 +81,9 @@ class RangeRestorer : public DrawSink {
   DrawSink* downstream_ = nullptr;
 };
 
-/// What lies between a stage and the next: collects, and offers all at once.
+/// What lies before a stage: collects what is emitted towards it, and offers all at once in a form
+/// that the stage understands. The first stage has one too, because a chain of triangle granularity
+/// may begin with a stage of object granularity.
 class Link : public DrawSink {
  public:
   explicit Link(ICuller& next) : next_(&next) {}
@@ -112,6 +114,21 @@ class Link : public DrawSink {
   void flush() override {
     offer();
     downstream_->flush();
+  }
+
+  /// Collects what the whole chain is offered.
+  void take(const Candidates& candidates) {
+    switch (candidates.form()) {
+      case Form::everything:
+        everything();
+        break;
+      case Form::objects:
+        for (const std::span<const ObjectId> run : candidates.object_runs()) objects(run);
+        break;
+      case Form::ranges:
+        for (const std::span<const TriangleRange> run : candidates.range_runs()) ranges(run);
+        break;
+    }
   }
 
   /// Offers what was collected to the next stage, and so on down the chain.
@@ -190,7 +207,7 @@ class Chain : public ICuller {
  public:
   explicit Chain(std::vector<std::unique_ptr<ICuller>> stages) : stages_(std::move(stages)) {
     if (stages_.size() < 2) throw std::logic_error("a chain has at least two stages");
-    for (std::size_t i = 1; i < stages_.size(); ++i) links_.emplace_back(*stages_[i]);
+    for (const auto& stage : stages_) links_.emplace_back(*stage);
     describe();
   }
 
@@ -214,7 +231,7 @@ class Chain : public ICuller {
       Link* const next = i + 1 < links_.size() ? &links_[i + 1] : nullptr;
       links_[i].start(frame, next != nullptr ? static_cast<DrawSink&>(*next) : out, next);
     }
-    stages_.front()->cull(frame, candidates, links_.front());
+    links_.front().take(candidates);
     links_.front().offer();
   }
 
@@ -262,7 +279,7 @@ class Chain : public ICuller {
   }
 
   std::vector<std::unique_ptr<ICuller>> stages_;
-  std::vector<Link> links_;
+  std::vector<Link> links_;  // one before each stage
   CullerInfo info_;
 };
 

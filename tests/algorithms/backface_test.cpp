@@ -1,0 +1,176 @@
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "common/geometry/random.h"
+#include "experiments/contract/small_scenes.h"
+#include "tests/algorithms/run_culler.h"
+
+namespace vislab {
+namespace {
+
+Scene one_object(Mesh mesh, const glm::dmat4x3& transform = glm::dmat4x3(1.0)) {
+  Scene scene;
+  scene.meshes = {std::move(mesh)};
+  scene.objects = {{0, transform, none_id}};
+  scene.finish();
+  return scene;
+}
+
+std::set<std::uint32_t> triangles(const std::vector<TriangleRange>& ranges) {
+  std::set<std::uint32_t> all;
+  for (const TriangleRange& range : ranges) {
+    for (std::uint32_t i = 0; i < range.count; ++i) {
+      EXPECT_TRUE(all.insert(range.first + i).second) << "twice";
+    }
+  }
+  return all;
+}
+
+/// A quad in the plane z = 0 that is seen from +z.
+Mesh sheet() {
+  Mesh mesh;
+  mesh.positions = {
+      {-1.0F, -1.0F, 0.0F}, {1.0F, -1.0F, 0.0F}, {1.0F, 1.0F, 0.0F}, {-1.0F, 1.0F, 0.0F}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return mesh;
+}
+
+TEST(BackfacePolygon, KeepsTheSidesOfACubeThatFaceTheEye) {
+  const Scene scene = one_object(cube_mesh());
+  CullerRun run("backface.polygon", scene);
+  // Sides in the mesh: -x, +x, -y, +y, -z, +z, two triangles each.
+  using Set = std::set<std::uint32_t>;
+  const glm::dvec3 middle(0.0);
+  EXPECT_EQ(triangles(run.emitted(camera_at({0.0, 0.0, 5.0}, middle))), (Set{10, 11}));
+  EXPECT_EQ(triangles(run.emitted(camera_at({0.0, -5.0, 0.1}, middle))), (Set{4, 5}));
+  EXPECT_EQ(triangles(run.emitted(camera_at({-4.0, 3.0, 5.0}, middle))), (Set{0, 1, 6, 7, 10, 11}));
+}
+
+TEST(BackfacePolygon, KeepsWhatIsSeenExactlyEdgeOn) {
+  const Scene scene = one_object(cube_mesh());
+  CullerRun run("backface.polygon", scene);
+  const Camera beside = camera_at({1.0, 0.0, 5.0}, {0.0, 0.0, 0.0});  // in the plane of +x
+  EXPECT_EQ(triangles(run.emitted(beside)), (std::set<std::uint32_t>{2, 3, 10, 11}));
+}
+
+TEST(BackfacePolygon, UsesTheViewDirectionOfAnOrthographicCamera) {
+  const Scene scene = one_object(cube_mesh());
+  CullerRun run("backface.polygon", scene);
+  Camera camera = camera_at({3.0, 0.0, 50.0}, {0.0, 0.0, 0.0});
+  camera.lens = orthographic_lens(5.0, 1.0, 0.1, 100.0);
+  EXPECT_EQ(triangles(run.emitted(camera)), (std::set<std::uint32_t>{2, 3, 4, 5, 6, 7, 10, 11}));
+  camera.pose = look_at({3.0, 0.5, 50.0}, {0.0, 0.0, 0.0});
+  EXPECT_EQ(triangles(run.emitted(camera)), (std::set<std::uint32_t>{2, 3, 6, 7, 10, 11}));
+}
+
+TEST(BackfacePolygon, KeepsAnObjectWholeIfTheEyeIsInItsBoxOrNear) {
+  const Scene scene = one_object(cube_mesh());
+  CullerRun run("backface.polygon", scene);
+  for (const glm::dvec3& eye :
+       {glm::dvec3(0.0, 0.0, 0.5), glm::dvec3(1.0, 0.0, 0.0), glm::dvec3(0.0, 0.0, 1.1)}) {
+    EXPECT_EQ(triangles(run.emitted(camera_at(eye, {0.0, 0.0, -3.0}))).size(), 12U);
+  }
+  Camera orthographic = camera_at({0.0, 0.0, 0.5}, {0.0, 0.0, -3.0});
+  orthographic.lens = orthographic_lens(5.0, 1.0, 0.1, 100.0);
+  EXPECT_EQ(triangles(run.emitted(orthographic)).size(), 12U);
+}
+
+TEST(BackfacePolygon, KeepsOpenMeshesUnlessToldOtherwise) {
+  const Scene scene = one_object(sheet());
+  const Camera front = camera_at({0.0, 0.0, 5.0}, {0.0, 0.0, 0.0});
+  const Camera back = camera_at({0.0, 0.0, -5.0}, {0.0, 0.0, 0.0});
+  CullerRun careful("backface.polygon", scene);
+  EXPECT_EQ(careful.culler().info().guarantee, Guarantee::conservative);
+  EXPECT_EQ(triangles(careful.emitted(back)).size(), 2U);
+  CullerRun careless("backface.polygon[open=cull]", scene);
+  EXPECT_EQ(careless.culler().info().guarantee, Guarantee::approximate);
+  EXPECT_EQ(triangles(careless.emitted(front)).size(), 2U);
+  EXPECT_EQ(triangles(careless.emitted(back)).size(), 0U);
+}
+
+TEST(BackfacePolygon, KeepsTheFrontOfObjectsUnderAnyAffineTransform) {
+  Random random(9);
+  for (int i = 0; i < 200; ++i) {
+    glm::dmat4x3 transform;
+    do {
+      for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 3; ++row) transform[column][row] = random.uniform(-2.0, 2.0);
+      }
+    } while (glm::determinant(glm::dmat3(transform[0], transform[1], transform[2])) < 0.2);
+    const Scene scene = one_object(sphere_mesh(6), transform);
+    CullerRun run("backface.polygon", scene);
+    const Camera camera = camera_at({9.0, 8.0, 12.0}, {0.0, 0.0, 0.0});
+    std::set<std::uint32_t> expected;
+    for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
+      const auto [a, b, c] = world_triangle(scene.meshes[0], transform, t);
+      const glm::dvec3 normal = glm::cross(b - a, c - a);
+      if (glm::dot(normal, camera.pose.eye - a) >= -1e-12) expected.insert(t);
+    }
+    EXPECT_EQ(triangles(run.emitted(camera)), expected) << "transform " << i;
+    EXPECT_GT(expected.size(), 10U);
+    EXPECT_LT(expected.size(), 140U);
+  }
+}
+
+TEST(BackfacePolygon, KeepsOnlyWhatItWasOffered) {
+  const Scene scene = one_object(cube_mesh());
+  CullerRun run("backface.polygon", scene);
+  const std::vector<TriangleRange> some = {{0, 9, 3}, {0, 0, 1}, {0, 2, 3}};
+  const std::span<const TriangleRange> span(some);
+  const std::vector<TriangleRange> kept =
+      run.emitted(camera_at({5.0, 0.1, 5.0}, {0.0, 0.0, 0.0}),
+                  Candidates::of(std::span<const std::span<const TriangleRange>>(&span, 1)));
+  EXPECT_EQ(kept, (std::vector<TriangleRange>{{0, 10, 2}, {0, 2, 2}}));
+}
+
+/// Side of the plane through a, b, c on which p lies, exactly: coordinates are whole numbers below
+/// 2^22, so that no product of three differences reaches 2^127.
+int exact_side(const glm::ivec3& a, const glm::ivec3& b, const glm::ivec3& c, const glm::ivec3& p) {
+  __extension__ using Wide = __int128;
+  const auto difference = [&](const glm::ivec3& q) { return glm::i64vec3(q) - glm::i64vec3(a); };
+  const glm::i64vec3 u = difference(b), v = difference(c), w = difference(p);
+  const Wide volume = Wide(u.y * v.z - u.z * v.y) * w.x + Wide(u.z * v.x - u.x * v.z) * w.y +
+                      Wide(u.x * v.y - u.y * v.x) * w.z;
+  return volume > 0 ? 1 : volume < 0 ? -1 : 0;
+}
+
+TEST(BackfacePolygon, IsNeverWrongNextToThePlaneOfATriangle) {
+  Random random(21);
+  const auto whole = [&](int limit) {
+    return glm::ivec3(random.uniform(-limit, limit), random.uniform(-limit, limit),
+                      random.uniform(-limit, limit));
+  };
+  int behind = 0;
+  int culled = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const int size = i % 2 == 0 ? 1 << 20 : 40;  // also slivers, by chance
+    const glm::ivec3 a = whole(size), b = whole(size), c = whole(size);
+    const glm::ivec3 offset = whole(1000);
+    // In the plane, far outside of the triangle, and up to one unit off it.
+    const auto s = static_cast<int>(random.below(3)), t = static_cast<int>(random.below(3));
+    const glm::ivec3 eye = a + (b - a) * -s + (c - a) * -t + whole(2);
+    Mesh mesh;
+    mesh.positions = {glm::vec3(a), glm::vec3(b), glm::vec3(c)};
+    mesh.triangles = {{0, 1, 2}};
+    Scene scene;
+    try {
+      scene = one_object(mesh, placed(glm::dvec3(offset)));
+    } catch (const std::runtime_error&) {
+      continue;
+    }
+    Camera camera = camera_at(glm::dvec3(eye + offset), glm::dvec3(a + offset) + 0.5);
+    camera.lens.near_m = 1e-3;
+    CullerRun run("backface.polygon[open=cull]", scene);
+    const bool kept = !run.emitted(camera).empty();
+    const int side = exact_side(a, b, c, eye);
+    EXPECT_TRUE(kept || side < 0) << "triangle " << i << " is seen from side " << side;
+    behind += side < 0 ? 1 : 0;
+    culled += kept ? 0 : 1;
+  }
+  EXPECT_GT(behind, 500);
+  EXPECT_GT(culled, behind / 2);  // the error bound is not an excuse to keep everything
+}
+
+}  // namespace
+}  // namespace vislab
