@@ -63,6 +63,13 @@ Track read_orbit(const Settings& settings, const Scene& scene) {
   return orbit_track(scene.bounds(), orbit);
 }
 
+/// Looks to `target` if there is one, else where it goes.
+Track read_walk(const Settings& settings, const Points& points) {
+  const std::vector<glm::dvec3> way = points.list("points", 2);
+  if (!settings.has("target")) return walk_track(way, settings.number("turns", -100.0, 100.0, 0.0));
+  return gazing_track(way, points.one("target"));
+}
+
 Track read_cut(const Settings& settings, const Points& points) {
   const std::vector<glm::dvec3> eyes = points.list("eyes", 1);
   const std::vector<glm::dvec3> targets = points.list("targets", 1);
@@ -97,19 +104,14 @@ Track read_track(const Settings& settings, const Scene& scene, const std::filesy
                  int& frames) {
   const Points points(settings, scene);
   const std::string kind = settings.text("kind");
-  const auto turns = [&]() { return settings.number("turns", -100.0, 100.0, 0.0); };
   if (kind == "orbit") return read_orbit(settings, scene);
   if (kind == "turn") {
     return turn_track(points.one("eye"), settings.number("degrees", -3600.0, 3600.0, 360.0));
   }
-  if (kind == "walk") {
-    const std::vector<glm::dvec3> way = points.list("points", 2);
-    if (settings.has("target")) return gazing_track(way, points.one("target"));
-    return walk_track(way, turns());
-  }
+  if (kind == "walk") return read_walk(settings, points);
   if (kind == "stop_and_go") {
     const auto stops = static_cast<int>(settings.whole("stops", 1, 1000));
-    return stop_and_go_track(points.list("points", 2), turns(), stops);
+    return stop_and_go_track(read_walk(settings, points), stops);
   }
   if (kind == "cut") return read_cut(settings, points);
   if (kind == "recorded") {

@@ -94,8 +94,7 @@ Track gazing_track(const std::vector<glm::dvec3>& points, const glm::dvec3& targ
   return {pose, false};
 }
 
-Track stop_and_go_track(const std::vector<glm::dvec3>& points, double turns, int stops) {
-  const Track way = walk_track(points, turns);
+Track stop_and_go_track(const Track& way, int stops) {
   const auto pose = [=](double u) {
     // One round is half a stage of going, then half of standing.
     const double stage = u * stops;

@@ -44,9 +44,9 @@ Track walk_track(const std::vector<glm::dvec3>& points, double turns);
 /// them.
 Track gazing_track(const std::vector<glm::dvec3>& points, const glm::dvec3& target);
 
-/// The same way as walk_track, with `stops` halts of equal length that together take half of the
+/// Another way, which is no loop, with `stops` halts of equal length that together take half the
 /// time.
-Track stop_and_go_track(const std::vector<glm::dvec3>& points, double turns, int stops);
+Track stop_and_go_track(const Track& way, int stops);
 
 /// From eye to eye without a way between, each looking at its target; equally long everywhere. As
 /// many targets as eyes, each different from its eye.

@@ -1,0 +1,154 @@
+#include "common/scene/generators/generators.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "common/geometry/frustum.h"
+
+namespace vislab {
+namespace {
+
+TEST(BoxField, HasItsBoxesInItsCubeAndNoneWhereCamerasStand) {
+  BoxFieldParameters parameters;
+  parameters.count = 500;
+  parameters.extent_m = 20.0;
+  Scene scene = make_box_field(parameters);
+  scene.finish();
+  EXPECT_EQ(scene.object_count(), 500U);
+  EXPECT_EQ(scene.meshes.size(), 1U);
+  EXPECT_TRUE(scene.meshes[0].closed);
+  for (const Object& object : scene.objects) {
+    const Aabb box = transformed(scene.meshes[0].bounds, object.transform);
+    EXPECT_GE(std::sqrt(distance_squared(box, glm::dvec3(0.0))), 4.99);
+    for (int axis = 0; axis < 3; ++axis) EXPECT_LE(std::abs(object.transform[3][axis]), 20.0);
+  }
+}
+
+TEST(BoxField, DependsOnItsSeedAndNothingElse) {
+  BoxFieldParameters parameters;
+  parameters.count = 50;
+  const auto hash_of = [&]() {
+    Scene scene = make_box_field(parameters);
+    scene.finish();
+    return scene.content_hash();
+  };
+  const std::string first = hash_of();
+  EXPECT_EQ(hash_of(), first);
+  parameters.seed = 2;
+  EXPECT_NE(hash_of(), first);
+}
+
+TEST(BoxField, AMillionBoxesShareOneMesh) {
+  BoxFieldParameters parameters;
+  parameters.count = 1'000'000;
+  Scene scene = make_box_field(parameters);
+  scene.finish();
+  EXPECT_EQ(scene.meshes.size(), 1U);
+  EXPECT_EQ(scene.triangle_count(), 12'000'000U);
+  EXPECT_EQ(scene.object_of(11'999'999U), 999'999U);
+}
+
+TEST(Hares, AreDealtOutwardAlongTheAxes) {
+  HaresParameters parameters;
+  parameters.count = 14;
+  Scene scene = make_hares(cube_mesh(), parameters);
+  scene.finish();
+  ASSERT_EQ(scene.object_count(), 14U);
+  EXPECT_EQ(scene.meshes.size(), 1U);
+  std::set<std::string> seen;
+  for (const Object& object : scene.objects) {
+    const glm::dvec3 p = object.transform[3];
+    int axes = 0;
+    for (int axis = 0; axis < 3; ++axis) axes += p[axis] != 0.0 ? 1 : 0;
+    EXPECT_EQ(axes, 1);
+    seen.insert(std::to_string(p.x) + "," + std::to_string(p.y) + "," + std::to_string(p.z));
+  }
+  EXPECT_EQ(seen.size(), 14U);
+  EXPECT_EQ(scene.objects[0].transform[3], glm::dvec3(2.0, 0.0, 0.0));
+  EXPECT_EQ(scene.objects[13].transform[3], glm::dvec3(-6.0, 0.0, 0.0));
+  EXPECT_NEAR(scene.bounds().max.x, 6.5, 1e-5);
+}
+
+TEST(City, HasThePeersBuildings) {
+  Scene scene = make_city(CityParameters());
+  scene.finish();
+  EXPECT_EQ(scene.object_count(), 2000U);
+  EXPECT_EQ(scene.triangle_count(), 24'000U);
+  int towers = 0;
+  for (const Object& object : scene.objects) {
+    const double height = 2.0 * object.transform[1][1];
+    EXPECT_NEAR(object.transform[3].y, 0.5 * height, 1e-12);
+    towers += height >= 40.0 ? 1 : 0;
+    EXPECT_TRUE((height >= 8.0 && height <= 30.0) || (height >= 40.0 && height <= 80.0));
+  }
+  EXPECT_GT(towers, 120);
+  EXPECT_LT(towers, 280);
+}
+
+TEST(City, KeepsTheMiddleOfEveryStreetFree) {
+  CityParameters parameters;
+  parameters.blocks_x = 5;
+  parameters.blocks_z = 4;
+  parameters.street_boxes = 300;
+  parameters.roof_share = 0.5;
+  Scene scene = make_city(parameters);
+  scene.finish();
+  EXPECT_EQ(scene.object_count(), 320U);
+  EXPECT_EQ(scene.meshes.size(), 2U);
+  EXPECT_TRUE(scene.meshes[1].closed);
+  EXPECT_EQ(scene.meshes[1].triangles.size(), 16U);
+  for (ObjectId id = 0; id < scene.object_count(); ++id) {
+    const Aabb box = transformed(scene.mesh_of(id).bounds, scene.objects[id].transform);
+    for (int street = 0; street <= 5; ++street) {
+      const double x = (street - 2.5) * 25.0;
+      EXPECT_TRUE(box.max.x < x - 0.99 || box.min.x > x + 0.99);
+    }
+    for (int street = 0; street <= 4; ++street) {
+      const double z = (street - 2.0) * 25.0;
+      EXPECT_TRUE(box.max.z < z - 0.99 || box.min.z > z + 0.99);
+    }
+  }
+}
+
+TEST(RoomRing, JoinsItsCellsByPortalsInBothDirections) {
+  RoomRingParameters parameters;
+  parameters.rooms = 7;
+  parameters.boxes_per_room = 3;
+  Scene scene = make_room_ring(parameters);
+  scene.finish();
+  EXPECT_EQ(scene.cells.size(), 7U);
+  EXPECT_EQ(scene.object_count(), 7U * 4U);
+  ASSERT_EQ(scene.portals.size(), 14U);
+  for (const Portal& portal : scene.portals) {
+    const std::uint32_t step = (portal.to + 7U - portal.from) % 7U;
+    EXPECT_TRUE(step == 1 || step == 6);
+    // Counter-clockwise seen from the cell it leads out of: that cell is inside its plane.
+    const Plane plane = plane_through(portal.polygon[0], portal.polygon[1], portal.polygon[2]);
+    EXPECT_GT(plane.signed_distance(scene.cells[portal.from].bounds.center()), 0.0);
+    EXPECT_LT(plane.signed_distance(scene.cells[portal.to].bounds.center()), 0.0);
+  }
+}
+
+TEST(RoomRing, ClosesUpIntoOneSurfaceThatFacesInward) {
+  RoomRingParameters parameters;
+  parameters.rooms = 5;
+  parameters.boxes_per_room = 0;
+  const Scene scene = make_room_ring(parameters);
+  Mesh all;
+  for (const Object& object : scene.objects) {
+    const Mesh& mesh = scene.meshes[object.mesh];
+    const auto base = static_cast<std::uint32_t>(all.positions.size());
+    all.positions.insert(all.positions.end(), mesh.positions.begin(), mesh.positions.end());
+    for (const glm::uvec3& t : mesh.triangles) all.triangles.push_back(t + base);
+  }
+  EXPECT_FALSE(is_closed_outward(all));
+  for (glm::uvec3& t : all.triangles) std::swap(t.x, t.y);
+  EXPECT_TRUE(is_closed_outward(all));
+}
+
+}  // namespace
+}  // namespace vislab

@@ -1,0 +1,285 @@
+#include "common/scene/quake_world.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include "common/scene/quake_file.h"
+#include "tests/scene/test_files.h"
+
+namespace vislab {
+namespace {
+
+using test::input_error;
+using test::says;
+using test::ScratchFolder;
+
+constexpr int lump_count = 17;
+
+/// A small world: one node that parts x < 0 from x > 0, three leaves (0 is solid by custom), a
+/// square floor, a patch and a door.
+struct SmallWorld {
+  std::string entities =
+      "{ \"classname\" \"worldspawn\" }\n"
+      "{ \"classname\" \"info_player_start\" \"origin\" \"64 0 32\" \"angle\" \"90\" }\n"
+      "{ \"classname\" \"func_door\" \"model\" \"*1\" \"origin\" \"0 0 320\" }\n";
+  std::vector<quake::Texture> textures{2};
+  std::vector<quake::PlaneRecord> planes{{{1, 0, 0}, 0}};
+  std::vector<quake::NodeRecord> nodes{{0, {-2, -3}, {-128, -128, 0}, {128, 128, 128}}};
+  std::vector<quake::LeafRecord> leaves{
+      {-1, -1, {0, 0, 0}, {0, 0, 0}, 0, 0, 0, 0},
+      {0, 0, {0, -128, 0}, {128, 128, 128}, 0, 2, 0, 0},
+      {1, 0, {-128, -128, 0}, {0, 128, 128}, 1, 2, 0, 0},
+  };
+  std::vector<std::int32_t> leaf_faces{0, 1, 2};
+  std::vector<quake::ModelRecord> models{{{-128, -128, 0}, {128, 128, 128}, 0, 3, 0, 0},
+                                         {{0, 0, 0}, {32, 32, 0}, 3, 1, 0, 0}};
+  std::vector<quake::Vertex> vertices;
+  std::vector<std::int32_t> mesh_vertices{0, 2, 1, 0, 3, 2};  // clockwise from above, as in Quake
+  std::vector<quake::FaceRecord> faces;
+  std::string visible = std::string("\2\0\0\0\1\0\0\0\3\1", 10);
+
+  SmallWorld() {
+    textures[1].flags = 0x80;  // not drawn
+    const auto add_vertex = [&](float x, float y, float z) {
+      quake::Vertex vertex{};
+      vertex.position = {x, y, z};
+      vertices.push_back(vertex);
+    };
+    add_vertex(0, 0, 0);
+    add_vertex(64, 0, 0);
+    add_vertex(64, 64, 0);
+    add_vertex(0, 64, 0);
+    // An arch: three rows of control points over x, bent upward in the middle.
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        add_vertex(-96.0F + 32.0F * static_cast<float>(column), 32.0F * static_cast<float>(2 - row),
+                   column == 1 ? 64.0F : 32.0F);
+      }
+    }
+    quake::FaceRecord floor{};
+    floor.type = quake::FaceType::polygon;
+    floor.vertex_count = 4;
+    floor.mesh_vertex_count = 6;
+    quake::FaceRecord hidden = floor;
+    hidden.texture = 1;
+    quake::FaceRecord patch{};
+    patch.type = quake::FaceType::patch;
+    patch.first_vertex = 4;
+    patch.vertex_count = 9;
+    patch.size[0] = 3;
+    patch.size[1] = 3;
+    faces = {floor, hidden, patch, floor};
+  }
+
+  std::string bytes() const {
+    std::map<int, std::string> lumps;
+    const auto add = [&](int lump, const auto& records) {
+      lumps[lump].assign(reinterpret_cast<const char*>(records.data()),
+                         records.size() * sizeof(records[0]));
+    };
+    lumps[0] = entities;
+    add(1, textures);
+    add(2, planes);
+    add(3, nodes);
+    add(4, leaves);
+    add(5, leaf_faces);
+    add(7, models);
+    add(10, vertices);
+    add(11, mesh_vertices);
+    add(13, faces);
+    lumps[16] = visible;
+    std::string header("IBSP\x2e\0\0\0", 8);
+    std::string body;
+    for (int lump = 0; lump < lump_count; ++lump) {
+      const auto offset = static_cast<std::int32_t>(8 + 8 * lump_count + body.size());
+      const auto length = static_cast<std::int32_t>(lumps[lump].size());
+      header.append(reinterpret_cast<const char*>(&offset), 4);
+      header.append(reinterpret_cast<const char*>(&length), 4);
+      body += lumps[lump];
+    }
+    return header + body;
+  }
+};
+
+class QuakeWorldFile : public testing::Test {
+ protected:
+  Scene load(const SmallWorld& world) {
+    Scene scene = import_quake_world(folder_.write("small.bsp", world.bytes()));
+    scene.finish();
+    return scene;
+  }
+  std::string refused(const SmallWorld& world) { return refused_bytes(world.bytes()); }
+  std::string refused_bytes(const std::string& bytes) {
+    const std::filesystem::path file = folder_.write("small.bsp", bytes);
+    return input_error([&]() { import_quake_world(file); });
+  }
+
+  ScratchFolder folder_;
+};
+
+TEST_F(QuakeWorldFile, MakesAnObjectOfTheFacesOfEachLeafAndEachBrushModel) {
+  const Scene scene = load(SmallWorld());
+  ASSERT_EQ(scene.object_count(), 3U);
+  EXPECT_EQ(scene.triangle_count(ObjectId{0}), 2U);   // the floor; the other face is not drawn
+  EXPECT_EQ(scene.triangle_count(ObjectId{1}), 32U);  // the patch in 4 x 4 cells
+  EXPECT_EQ(scene.triangle_count(ObjectId{2}), 2U);   // the door
+  const QuakeWorld& world = *scene.quake;
+  EXPECT_EQ(world.leaves[1].object, 0U);
+  EXPECT_EQ(world.leaves[2].object, 1U);
+  EXPECT_EQ(world.leaves[0].object, none_id);
+  ASSERT_EQ(world.brush_models.size(), 1U);
+  EXPECT_EQ(world.brush_models[0].object, 2U);
+  EXPECT_EQ(world.brush_models[0].class_name, "func_door");
+  EXPECT_EQ(world.leaf_of_object, (std::vector<std::uint32_t>{1, 2, none_id}));
+}
+
+TEST_F(QuakeWorldFile, TurnsIntoMetresWithYUpAndFrontFacesCounterClockwise) {
+  const Scene scene = load(SmallWorld());
+  const Aabb& floor = scene.meshes[0].bounds;
+  EXPECT_EQ(floor.min, glm::vec3(0.0F, 0.0F, -2.0F));
+  EXPECT_EQ(floor.max, glm::vec3(2.0F, 0.0F, 0.0F));
+  const auto corners = world_triangle(scene.meshes[0], scene.objects[0].transform, 0);
+  EXPECT_GT(glm::cross(corners[1] - corners[0], corners[2] - corners[0]).y, 0.0);
+  EXPECT_EQ(scene.objects[2].transform[3], glm::dvec3(0.0, 10.0, 0.0));
+}
+
+TEST_F(QuakeWorldFile, BendsPatchesAlongTheirCurve) {
+  const Scene scene = load(SmallWorld());
+  const Mesh& arch = scene.meshes[1];
+  EXPECT_EQ(arch.positions.size(), 25U);
+  // A quarter of the way along the curve the height is 9/16 + 1/16 of the ends' and 6/16 of the
+  // middle's: 44 units.
+  EXPECT_EQ(arch.positions[1].y, 44.0F / 32.0F);
+  EXPECT_EQ(arch.positions[2].y, 48.0F / 32.0F);
+  for (std::uint32_t t = 0; t < arch.triangles.size(); ++t) {
+    const auto c = world_triangle(arch, scene.objects[1].transform, t);
+    EXPECT_GT(glm::cross(c[1] - c[0], c[2] - c[0]).y, 0.0);
+  }
+}
+
+TEST_F(QuakeWorldFile, LeavesPatchCellsOutThatAreDrawnTogetherToAPoint) {
+  SmallWorld world;
+  for (std::size_t i = 5; i < 7; ++i) world.vertices[i].position = world.vertices[4].position;
+  const Scene scene = load(world);
+  EXPECT_EQ(scene.triangle_count(ObjectId{1}), 28U);
+  EXPECT_EQ(scene.report.zero_area_triangles, 0U);
+}
+
+TEST_F(QuakeWorldFile, NeighbouringPatchesShareTheirEdgeExactly) {
+  // The second patch continues the first, its common edge run through backwards.
+  SmallWorld world;
+  const float wobble[9] = {0.1F, 0.7F, -0.3F, 0.77F, 13.3F, 5.1F, -7.7F, 3.3F, 0.9F};
+  for (int i = 0; i < 9; ++i) {
+    world.vertices[static_cast<std::size_t>(4 + i)].position[2] += wobble[i];
+  }
+  quake::FaceRecord second = world.faces[2];
+  second.first_vertex = static_cast<std::int32_t>(world.vertices.size());
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      quake::Vertex vertex = world.vertices[static_cast<std::size_t>(4 + 3 * (2 - row) + 2)];
+      vertex.position[0] += 32.0F * static_cast<float>(column);
+      world.vertices.push_back(vertex);
+    }
+  }
+  world.faces.insert(world.faces.begin() + 3, second);
+  world.leaf_faces = {0, 1, 2, 3};
+  world.leaves[2].face_count = 3;
+  world.models[0].face_count = 4;
+  world.models[1].first_face = 4;
+  const Scene scene = load(world);
+  EXPECT_EQ(scene.meshes[1].positions.size(), 45U);  // 25 + 25 less the five of the edge
+}
+
+TEST_F(QuakeWorldFile, KnowsLeavesVisibilityEntitiesAndPlaces) {
+  const Scene scene = load(SmallWorld());
+  const QuakeWorld& world = *scene.quake;
+  EXPECT_EQ(world.leaf_at({1.0, 1.0, 0.0}), 1U);
+  EXPECT_EQ(world.leaf_at({-1.0, 1.0, 0.0}), 2U);
+  EXPECT_EQ(world.leaf_at({0.0, 1.0, 0.0}), 1U);
+  EXPECT_TRUE(world.sees(0, 1));
+  EXPECT_FALSE(world.sees(1, 1));
+  EXPECT_FALSE(world.sees(-1, 0));
+  ASSERT_EQ(world.entities.size(), 3U);
+  EXPECT_EQ(world.entities[1].at("angle"), "90");
+  ASSERT_EQ(world.places.size(), 1U);
+  EXPECT_EQ(world.places[0].eye, glm::dvec3(2.0, 58.0 / 32.0, 0.0));
+  EXPECT_NEAR(world.places[0].heading_rad, std::acos(-1.0) / 2.0, 1e-12);
+}
+
+TEST_F(QuakeWorldFile, RefusesEveryTruncation) {
+  const std::string whole = SmallWorld().bytes();
+  for (std::size_t size = 1; size < whole.size(); size += 7) {
+    SCOPED_TRACE(size);
+    EXPECT_TRUE(says(refused_bytes(whole.substr(0, size)), "small.bsp"));
+  }
+}
+
+TEST_F(QuakeWorldFile, NeverCrashesOnADamagedByte) {
+  const std::string whole = SmallWorld().bytes();
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    for (const char damage : {'\xff', '\x7f', '\x01'}) {
+      std::string bytes = whole;
+      bytes[at] = static_cast<char>(bytes[at] ^ damage);
+      try {
+        Scene scene = import_quake_world(folder_.write("damaged.bsp", bytes));
+        scene.finish();
+      } catch (const InputError& error) {
+        EXPECT_TRUE(says(error.what(), ""));
+      }
+    }
+  }
+}
+
+TEST_F(QuakeWorldFile, RefusesOtherFormatsAndVersions) {
+  EXPECT_TRUE(says(refused_bytes("not a world at all, but long enough"), "begin with IBSP"));
+  std::string old = SmallWorld().bytes();
+  old[4] = 38;
+  EXPECT_TRUE(says(refused_bytes(old), "has version 38"));
+}
+
+TEST_F(QuakeWorldFile, RefusesIndicesOutOfRange) {
+  const auto expect_refused = [&](auto damage, const std::string& part) {
+    SmallWorld world;
+    damage(world);
+    EXPECT_TRUE(says(refused(world), part));
+  };
+  expect_refused([](SmallWorld& w) { w.leaf_faces[1] = 4; }, "face 4");
+  expect_refused([](SmallWorld& w) { w.leaf_faces[1] = -1; }, "face -1");
+  expect_refused([](SmallWorld& w) { w.mesh_vertices[2] = 4; }, "vertex of a face 4");
+  expect_refused([](SmallWorld& w) { w.faces[0].mesh_vertex_count = 9; }, "mesh vertex 0 and 9");
+  expect_refused([](SmallWorld& w) { w.faces[0].mesh_vertex_count = 5; }, "whole triangles");
+  expect_refused([](SmallWorld& w) { w.faces[0].first_vertex = 12; }, "vertex 12 and 4");
+  expect_refused([](SmallWorld& w) { w.faces[0].texture = 2; }, "texture 2");
+  expect_refused([](SmallWorld& w) { w.faces[2].size[0] = 4; }, "a patch of 4 by 3");
+  expect_refused([](SmallWorld& w) { w.faces[2].size[1] = 5; }, "a patch of 3 by 5");
+  expect_refused([](SmallWorld& w) { w.faces[1].type = quake::FaceType{7}; }, "unknown type 7");
+  expect_refused([](SmallWorld& w) { w.nodes[0].plane = 1; }, "plane 1");
+  expect_refused([](SmallWorld& w) { w.nodes[0].children[0] = 0; }, "two parents");
+  expect_refused([](SmallWorld& w) { w.nodes[0].children[1] = -4; }, "BSP leaf 3");
+  expect_refused([](SmallWorld& w) { w.leaves[1].first_face = 3; }, "leaf face 3");
+  expect_refused([](SmallWorld& w) { w.leaves[1].cluster = 2; }, "cluster 2 of 2");
+  expect_refused([](SmallWorld& w) { w.models[1].face_count = 2; }, "face 3 and 2");
+  expect_refused([](SmallWorld& w) { w.visible[4] = 9; }, "visibility sets");
+  expect_refused([](SmallWorld& w) { w.nodes.clear(); }, "no BSP node");
+  expect_refused([](SmallWorld& w) { w.models.clear(); }, "no model");
+}
+
+TEST_F(QuakeWorldFile, RefusesEntitiesThatDoNotEnd) {
+  SmallWorld world;
+  world.entities = "{ \"classname\" \"worldspawn\" ";
+  EXPECT_TRUE(says(refused(world), "last entity does not end"));
+  world.entities = "{ \"classname\" \"worldsp";
+  EXPECT_TRUE(says(refused(world), "entity text"));
+}
+
+TEST_F(QuakeWorldFile, RefusesAWorldWithoutAnyFace) {
+  SmallWorld world;
+  for (quake::FaceRecord& face : world.faces) face.texture = 1;
+  EXPECT_TRUE(says(refused(world), "no face that is drawn"));
+}
+
+}  // namespace
+}  // namespace vislab

@@ -1,0 +1,155 @@
+// Scenes from packages, which ./lab test fetches.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "common/scene/library.h"
+#include "common/scene/quake_world.h"
+#include "tests/scene/test_files.h"
+
+namespace vislab {
+namespace {
+
+using test::repository_data;
+
+Scene load(const std::string& name) { return load_scene(name, repository_data()).scene; }
+
+TEST(RealScenes, TheDragonIsTheOneOfTheThesis) {
+  const Scene dragon = load("dragon");
+  EXPECT_EQ(dragon.triangle_count(), 47'794U);
+  EXPECT_EQ(dragon.meshes[0].positions.size(), 22'998U);
+  EXPECT_FALSE(dragon.meshes[0].closed);  // its authors say so: decimation left holes
+}
+
+TEST(RealScenes, TheCowIsTheOneOfTheThesisAndClosed) {
+  const Scene cow = load("cow");
+  EXPECT_EQ(cow.triangle_count(), 5'804U);
+  EXPECT_EQ(cow.meshes[0].positions.size(), 2'903U);  // one of 2,904 is there twice
+  EXPECT_TRUE(cow.meshes[0].closed);
+}
+
+TEST(RealScenes, BunnyManAndElephantAreClosed) {
+  const std::pair<std::string, std::size_t> expected[] = {
+      {"bunny", 75'408}, {"man", 34'986}, {"elephant", 5'558}};
+  for (const auto& [name, triangles] : expected) {
+    const Scene scene = load(name);
+    EXPECT_EQ(scene.triangle_count(), triangles) << name;
+    EXPECT_TRUE(scene.meshes[0].closed) << name;
+  }
+}
+
+TEST(RealScenes, TheHareIsABunnyWithAboutTheTrianglesOfTheThesis) {
+  const Scene hare = load("hare");
+  EXPECT_NEAR(static_cast<double>(hare.triangle_count()), 4968.0, 40.0);
+  EXPECT_TRUE(hare.meshes[0].closed);
+}
+
+TEST(RealScenes, TheHaresShareOneMesh) {
+  const Scene hare = load("hare");
+  for (const std::size_t count : {14, 28, 56, 112, 252, 546}) {
+    const Scene hares = load("hares_" + std::to_string(count));
+    EXPECT_EQ(hares.object_count(), count);
+    EXPECT_EQ(hares.meshes.size(), 1U);
+    EXPECT_EQ(hares.triangle_count(), count * hare.triangle_count());
+  }
+}
+
+class OpenArena : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { scene_ = new Scene(load("oa_dm2")); }
+  static void TearDownTestSuite() { delete scene_; }
+  static const QuakeWorld& world() { return *scene_->quake; }
+
+  static Scene* scene_;
+};
+
+Scene* OpenArena::scene_ = nullptr;
+
+TEST_F(OpenArena, HasTheKnownCounts) {
+  EXPECT_EQ(scene_->triangle_count(), 12'033U);
+  EXPECT_EQ(world().leaves.size(), 2560U);
+  EXPECT_EQ(world().cluster_count, 1041U);
+  int doors = 0;
+  for (const QuakeBrushModel& model : world().brush_models) {
+    doors += model.class_name == "func_door" ? 1 : 0;
+  }
+  EXPECT_EQ(doors, 11);
+  double visible = 0.0;
+  for (std::uint32_t from = 0; from < world().cluster_count; ++from) {
+    for (std::uint32_t to = 0; to < world().cluster_count; ++to) {
+      visible += world().sees(static_cast<std::int32_t>(from), static_cast<std::int32_t>(to));
+    }
+  }
+  EXPECT_NEAR(visible / (1041.0 * 1041.0), 0.113, 0.0005);
+}
+
+TEST_F(OpenArena, KeepsTheLeafOfEveryObject) {
+  ASSERT_EQ(world().leaf_of_object.size(), scene_->object_count());
+  for (ObjectId id = 0; id < scene_->object_count(); ++id) {
+    const std::uint32_t leaf = world().leaf_of_object[id];
+    if (leaf != none_id) {
+      EXPECT_EQ(world().leaves[leaf].object, id);
+    }
+  }
+}
+
+TEST_F(OpenArena, SeesEachPlaceFromItself) {
+  ASSERT_GT(world().places.size(), 20U);
+  for (const QuakePlace& place : world().places) {
+    const std::int32_t cluster = world().leaves[place.leaf].cluster;
+    EXPECT_TRUE(world().sees(cluster, cluster));
+    EXPECT_EQ(world().leaf_at(place.eye), place.leaf);
+    EXPECT_TRUE(world().leaves[place.leaf].bounds.contains(place.eye));
+    EXPECT_TRUE(scene_->bounds().contains(place.eye));
+  }
+}
+
+TEST_F(OpenArena, ShowsFrontFacesOnlyToThoseWhoStandInIt) {
+  // The triangle nearest to a place, straight ahead in any direction, turns its front to it.
+  const QuakePlace& place = world().places.front();
+  int hits = 0;
+  for (int k = 0; k < 64; ++k) {
+    const double angle = 0.098 * k;
+    const glm::dvec3 direction(std::cos(angle), 0.0, std::sin(angle));
+    double nearest = std::numeric_limits<double>::infinity();
+    bool front = false;
+    for (ObjectId id = 0; id < scene_->object_count(); ++id) {
+      for (std::uint32_t t = 0; t < scene_->triangle_count(id); ++t) {
+        const auto c = world_triangle(scene_->mesh_of(id), scene_->objects[id].transform, t);
+        const glm::dvec3 normal = glm::cross(c[1] - c[0], c[2] - c[0]);
+        const double slope = glm::dot(normal, direction);
+        if (slope == 0.0) continue;
+        const double distance = glm::dot(normal, c[0] - place.eye) / slope;
+        if (distance <= 0.0 || distance >= nearest) continue;
+        const glm::dvec3 p = place.eye + direction * distance;
+        bool inside = true;
+        for (std::size_t i = 0; i < 3; ++i) {
+          inside &= glm::dot(normal, glm::cross(c[(i + 1) % 3] - c[i], p - c[i])) >= 0.0;
+        }
+        if (!inside) continue;
+        nearest = distance;
+        front = slope < 0.0;
+      }
+    }
+    if (std::isinf(nearest)) continue;
+    ++hits;
+    EXPECT_TRUE(front) << "direction " << k;
+  }
+  EXPECT_GE(hits, 60);
+}
+
+TEST_F(OpenArena, IsWalkedWithinItsOpenLeaves) {
+  const Path path = load_path("", *scene_, {512, 512}, 0, repository_data());
+  ASSERT_EQ(path.frames.size(), 60U);
+  for (const PathFrame& frame : path.frames) {
+    const std::uint32_t leaf = world().leaf_at(frame.camera.pose.eye);
+    EXPECT_GE(world().leaves[leaf].cluster, 0);
+  }
+  EXPECT_EQ(load_path("quake_walk", *scene_, {512, 512}, 0, repository_data()).content_hash(),
+            path.content_hash());
+}
+
+}  // namespace
+}  // namespace vislab
