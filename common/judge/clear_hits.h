@@ -4,8 +4,9 @@
 #include <array>
 #include <vector>
 
-#include "common/judge/ray_scene.h"
+#include "common/judge/samples.h"
 #include "common/judge/window_triangle.h"
+#include "common/scene/frame.h"
 
 namespace vislab {
 
@@ -25,16 +26,23 @@ class ClearHits {
   /// Is the hit with barycentrics u, v (of the second and third corner) at planar depth `depth` at
   /// least 1/128 pixel from every edge of `triangle`?
   bool is_clear(TriangleId triangle, float u, float v, float depth, const glm::dvec2& window_px) {
-    Entry& entry = entries_[triangle % entry_count];
-    if (entry.triangle != triangle) fill(entry, triangle);
-    const float w = perspective_ ? depth : 1.0F;
-    // Written so that NaN goes the slow way.
-    if ((1.0F - u - v) * entry.factor[0] >= w + entry.slack[0] &&
-        u * entry.factor[1] >= w + entry.slack[1] && v * entry.factor[2] >= w + entry.slack[2] &&
-        (!entry.cut || clear_of_cuts(entry, depth))) {
-      return true;
+    const Entry& entry = find(triangle);
+    return surely_clear(entry, u, v, depth) || decide(triangle, window_px);
+  }
+
+  /// How many of eight hits on one triangle are clear.
+  std::uint32_t count_clear(TriangleId triangle, const float* u, const float* v, const float* depth,
+                            const EightPositions& window_px) {
+    const Entry& entry = find(triangle);
+    std::uint32_t sure = 0;
+    for (int lane = 0; lane < 8; ++lane) sure += surely_clear(entry, u[lane], v[lane], depth[lane]);
+    if (sure == 8) return sure;
+    std::uint32_t count = 0;
+    for (int lane = 0; lane < 8; ++lane) {
+      count +=
+          surely_clear(entry, u[lane], v[lane], depth[lane]) || decide(triangle, window_px[lane]);
     }
-    return decide(triangle, window_px);
+    return count;
   }
 
  private:
@@ -47,6 +55,21 @@ class ClearHits {
     std::array<float, 3> factor{};  // see above, divided by the margin
     std::array<float, 3> slack{};   // for the rounding of barycentrics
   };
+
+  const Entry& find(TriangleId triangle) {
+    Entry& entry = entries_[triangle % entry_count];
+    if (entry.triangle != triangle) fill(entry, triangle);
+    return entry;
+  }
+
+  /// Written without branches, and so that NaN is never sure.
+  bool surely_clear(const Entry& entry, float u, float v, float depth) const {
+    const float w = perspective_ ? depth : 1.0F;
+    return (((1.0F - u - v) * entry.factor[0] >= w + entry.slack[0]) &
+            (u * entry.factor[1] >= w + entry.slack[1]) &
+            (v * entry.factor[2] >= w + entry.slack[2]) &
+            (!entry.cut || clear_of_cuts(entry, depth))) != 0;
+  }
 
   void fill(Entry& entry, TriangleId triangle);
   bool clear_of_cuts(const Entry& entry, float depth) const;

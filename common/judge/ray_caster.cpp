@@ -13,7 +13,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cstring>
 
 #include "common/judge/clear_hits.h"
 #include "common/judge/ray_scene.h"
@@ -35,20 +35,42 @@ struct Worker {
   ClearHits clear_hits;
 };
 
+/// All rays of a tile: the pixel centres, then set J.
+class TileRays {
+ public:
+  TileRays(const RayMaker& maker, const JitteredSamples& jittered)
+      : maker_(&maker),
+        jittered_(&jittered),
+        positions_(1 + jittered.packets_per_tile()),
+        varying_(positions_.size()) {}
+
+  void start(int tile_x, int tile_y) {
+    positions_[0] = pixel_centres(tile_x, tile_y);
+    jittered_->tile(tile_x, tile_y, &positions_[1]);
+    maker_->vary(positions_, varying_.data());
+  }
+  std::size_t packet_count() const { return positions_.size(); }
+  const EightPositions& positions(std::size_t packet) const { return positions_[packet]; }
+  const EightVectors& varying(std::size_t packet) const { return varying_[packet]; }
+
+ private:
+  const RayMaker* maker_;
+  const JitteredSamples* jittered_;
+  std::vector<EightPositions> positions_;
+  std::vector<EightVectors> varying_;
+};
+
 /// Eight rays, ready to be aimed again and again.
 struct alignas(64) Packet {
   RTCRayHit8 rays;
   alignas(32) std::array<int, 8> active;
 
   explicit Packet(const RayMaker& maker) : maker_(&maker) {
-    float* const common = maker.orthographic() ? rays.ray.dir_x : rays.ray.org_x;
-    for (int axis = 0; axis < 3; ++axis) {
-      // Embree's three arrays of a vector follow each other.
-      float* const array = axis == 0   ? common
-                           : axis == 1 ? (maker.orthographic() ? rays.ray.dir_y : rays.ray.org_y)
-                                       : (maker.orthographic() ? rays.ray.dir_z : rays.ray.org_z);
-      std::fill_n(array, 8, maker.common()[axis]);
-    }
+    RTCRay8& ray = rays.ray;
+    const bool orthographic = maker.orthographic();
+    std::fill_n(orthographic ? ray.dir_x : ray.org_x, 8, maker.common().x);
+    std::fill_n(orthographic ? ray.dir_y : ray.org_y, 8, maker.common().y);
+    std::fill_n(orthographic ? ray.dir_z : ray.org_z, 8, maker.common().z);
     std::fill_n(rays.ray.tnear, 8, maker.near_distance());
     std::fill_n(rays.ray.time, 8, 0.0F);
     std::fill_n(rays.ray.mask, 8, 0xFFFFFFFFU);
@@ -57,19 +79,47 @@ struct alignas(64) Packet {
     active.fill(-1);
   }
 
-  void aim(const EightPositions& window_px) {
-    if (maker_->orthographic()) {
-      maker_->vary(window_px, rays.ray.org_x, rays.ray.org_y, rays.ray.org_z);
-    } else {
-      maker_->vary(window_px, rays.ray.dir_x, rays.ray.dir_y, rays.ray.dir_z);
-    }
-    std::fill_n(rays.ray.tfar, 8, maker_->far_distance());
+  /// `varying` as RayMaker::vary gives it.
+  void aim(const EightVectors& varying) {
+    RTCRay8& ray = rays.ray;
+    const bool orthographic = maker_->orthographic();
+    std::memcpy(orthographic ? ray.org_x : ray.dir_x, varying.x.data(), sizeof varying.x);
+    std::memcpy(orthographic ? ray.org_y : ray.dir_y, varying.y.data(), sizeof varying.y);
+    std::memcpy(orthographic ? ray.org_z : ray.dir_z, varying.z.data(), sizeof varying.z);
+    std::fill_n(ray.tfar, 8, maker_->far_distance());
     std::fill_n(rays.hit.geomID, 8, RTC_INVALID_GEOMETRY_ID);
     std::fill_n(rays.hit.instID[0], 8, RTC_INVALID_GEOMETRY_ID);
   }
 
-  bool hit(int lane) const {
-    return active[lane] != 0 && rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID;
+  /// Switches off the rays of tiles that stick out of the image.
+  void activate_inside(const EightPositions& window_px, const Viewport& viewport) {
+    for (int lane = 0; lane < 8; ++lane) {
+      const bool inside =
+          (window_px.x[lane] < viewport.width) & (window_px.y[lane] < viewport.height);
+      active[lane] = inside ? -1 : 0;
+    }
+  }
+
+  /// Lanes that are not active keep what aim() wrote, which is no hit.
+  bool hit(int lane) const { return rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID; }
+
+  bool any_hit() const {
+    unsigned all_bits = RTC_INVALID_GEOMETRY_ID;
+    for (int lane = 0; lane < 8; ++lane) all_bits &= rays.hit.geomID[lane];
+    return all_bits != RTC_INVALID_GEOMETRY_ID;
+  }
+
+  float depth_offset() const { return static_cast<float>(maker_->depth_offset()); }
+
+  /// All lanes hit the same triangle, or none does.
+  bool uniform() const {
+    unsigned difference = 0;
+    for (int lane = 0; lane < 8; ++lane) {
+      difference |= (rays.hit.geomID[lane] ^ rays.hit.geomID[0]) |
+                    (rays.hit.primID[lane] ^ rays.hit.primID[0]) |
+                    (rays.hit.instID[0][lane] ^ rays.hit.instID[0][0]);
+    }
+    return difference == 0;
   }
 
   TriangleId triangle(int lane, const RayScene& scene) const {
@@ -81,6 +131,28 @@ struct alignas(64) Packet {
  private:
   const RayMaker* maker_;
 };
+
+/// Counts the hits of a packet of set J.
+void count(Packet& packet, const EightPositions& positions, const RayScene& scene, Worker& worker) {
+  const RTCHit8& hit = packet.rays.hit;
+  float* const depth = packet.rays.ray.tfar;
+  for (int lane = 0; lane < 8; ++lane) depth[lane] += packet.depth_offset();
+  if (packet.uniform()) {
+    const TriangleId triangle = packet.triangle(0, scene);
+    Counts& counts = worker.counts[triangle];
+    counts.hits += 8;
+    counts.clear_hits += worker.clear_hits.count_clear(triangle, hit.u, hit.v, depth, positions);
+    return;
+  }
+  for (int lane = 0; lane < 8; ++lane) {
+    if (!packet.hit(lane)) continue;
+    const TriangleId triangle = packet.triangle(lane, scene);
+    Counts& counts = worker.counts[triangle];
+    ++counts.hits;
+    counts.clear_hits += worker.clear_hits.is_clear(triangle, hit.u[lane], hit.v[lane], depth[lane],
+                                                    positions[lane]);
+  }
+}
 
 /// Lets rays pass through triangles that are not kept.
 struct KeptContext {
@@ -181,38 +253,26 @@ FrameTruth RayCaster::trace(const Frame& frame) {
 
   self.for_each_tile_row(viewport, [&](int tile_y, Worker& worker) {
     RTCIntersectContext context = coherent_context();
-    Packet centre(maker);
     Packet packet(maker);
-    const auto depth_offset = static_cast<float>(maker.depth_offset());
+    TileRays tile(maker, jittered);
     for (int tile_x = 0; tile_x * tile_width < viewport.width; ++tile_x) {
-      centre.aim(pixel_centres(tile_x, tile_y));
-      for (int lane = 0; lane < 8; ++lane) {
-        const int x = tile_x * tile_width + lane % tile_width;
-        const int y = tile_y * tile_height + lane / tile_width;
-        centre.active[lane] = x < viewport.width && y < viewport.height ? -1 : 0;
-      }
-      rtcIntersect8(centre.active.data(), self.rays.handle(), &context, &centre.rays);
-      for (int lane = 0; lane < 8; ++lane) {
-        if (centre.active[lane] == 0) continue;
-        const std::size_t x = tile_x * tile_width + lane % tile_width;
-        const std::size_t y = tile_y * tile_height + lane / tile_width;
-        truth.ids[y * viewport.width + x] = centre.triangle(lane, self.rays);
-      }
-      for (int p = 0; p < jittered.packets_per_tile(); ++p) {
-        const EightPositions positions = jittered.packet(tile_x, tile_y, p);
-        packet.aim(positions);
-        for (int lane = 0; lane < 8; ++lane) {
-          packet.active[lane] = centre.active[jittered.pixel_of(p, lane)];
-        }
+      tile.start(tile_x, tile_y);
+      const bool sticks_out = (tile_x + 1) * tile_width > viewport.width ||
+                              (tile_y + 1) * tile_height > viewport.height;
+      packet.active.fill(-1);
+      for (std::size_t p = 0; p < tile.packet_count(); ++p) {
+        packet.aim(tile.varying(p));
+        if (sticks_out) packet.activate_inside(tile.positions(p), viewport);
         rtcIntersect8(packet.active.data(), self.rays.handle(), &context, &packet.rays);
+        if (p > 0) {
+          if (packet.any_hit()) count(packet, tile.positions(p), self.rays, worker);
+          continue;
+        }
         for (int lane = 0; lane < 8; ++lane) {
-          const TriangleId triangle = packet.triangle(lane, self.rays);
-          if (triangle == none_id) continue;
-          Counts& counts = worker.counts[triangle];
-          ++counts.hits;
-          counts.clear_hits += worker.clear_hits.is_clear(
-              triangle, packet.rays.hit.u[lane], packet.rays.hit.v[lane],
-              packet.rays.ray.tfar[lane] + depth_offset, positions[lane]);
+          if (packet.active[lane] == 0) continue;
+          const std::size_t x = tile_x * tile_width + lane % tile_width;
+          const std::size_t y = tile_y * tile_height + lane / tile_width;
+          truth.ids[y * viewport.width + x] = packet.triangle(lane, self.rays);
         }
       }
     }
@@ -271,7 +331,9 @@ std::vector<RayCaster::Hit> RayCaster::cast(const Frame& frame,
       positions.x[lane] = p.x;
       positions.y[lane] = p.y;
     }
-    packet.aim(positions);
+    EightVectors varying;
+    maker.vary({&positions, 1}, &varying);
+    packet.aim(varying);
     rtcIntersect8(packet.active.data(), self.rays.handle(), &context.embree, &packet.rays);
     for (int lane = 0; lane < 8; ++lane) {
       if (!packet.hit(lane)) continue;
@@ -310,20 +372,18 @@ std::vector<RayCaster::Sample> RayCaster::jittered_hits(const Frame& frame,
   self.for_each_tile_row(viewport, [&](int tile_y, Worker&) {
     RTCIntersectContext context = coherent_context();
     Packet packet(maker);
+    TileRays tile(maker, jittered);
     for (int tile_x = 0; tile_x < columns; ++tile_x) {
       if (covered[static_cast<std::size_t>(tile_y) * columns + tile_x] == 0) continue;
-      for (int p = 0; p < jittered.packets_per_tile(); ++p) {
-        const EightPositions positions = jittered.packet(tile_x, tile_y, p);
-        packet.aim(positions);
-        for (int lane = 0; lane < 8; ++lane) {
-          packet.active[lane] =
-              positions.x[lane] < viewport.width && positions.y[lane] < viewport.height ? -1 : 0;
-        }
+      tile.start(tile_x, tile_y);
+      for (std::size_t p = 1; p < tile.packet_count(); ++p) {
+        packet.aim(tile.varying(p));
+        packet.activate_inside(tile.positions(p), viewport);
         rtcIntersect8(packet.active.data(), self.rays.handle(), &context, &packet.rays);
         for (int lane = 0; lane < 8; ++lane) {
           const TriangleId triangle = packet.triangle(lane, self.rays);
           if (triangle != none_id && wanted[triangle] != 0) {
-            found[tile_y].push_back({positions[lane], triangle});
+            found[tile_y].push_back({tile.positions(p)[lane], triangle});
           }
         }
       }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "common/geometry/camera.h"
@@ -12,11 +13,16 @@
 namespace vislab {
 
 /// Eight window positions, pixels.
-struct EightPositions {
+struct alignas(32) EightPositions {
   std::array<double, 8> x;
   std::array<double, 8> y;
 
   glm::dvec2 operator[](std::size_t i) const { return {x[i], y[i]}; }
+};
+
+/// Eight vectors, world frame.
+struct alignas(32) EightVectors {
+  std::array<float, 8> x, y, z;
 };
 
 /// Packets are taken from tiles of 4 x 2 pixels. Tile (0, 0) holds pixel (0, 0) in its lower left
@@ -34,27 +40,26 @@ EightPositions pixel_centres(int tile_x, int tile_y);
 /// of a pixel.
 class JitteredSamples {
  public:
-  /// `per_pixel` is at least 1.
-  JitteredSamples(const Viewport& viewport, int per_pixel, std::uint64_t seed);
+  /// `per_pixel` is at least 1. `use_avx2` may be false to get the same from the scalar twin.
+  JitteredSamples(const Viewport& viewport, int per_pixel, std::uint64_t seed,
+                  bool use_avx2 = true);
 
   /// A tile has 8 * packets_per_tile() samples, those of one pixel after the other.
   int packets_per_tile() const { return per_pixel_; }
-  EightPositions packet(int tile_x, int tile_y, int packet) const;
-  /// Which of the tile's eight pixels sample `lane` of a packet lies in.
-  int pixel_of(int packet, int lane) const { return (packet * 8 + lane) / per_pixel_; }
+  /// All samples of a tile: packets_per_tile() packets are written to `packets`. A tile at a time,
+  /// because the hash of a single packet is all waiting.
+  void tile(int tile_x, int tile_y, EightPositions* packets) const;
 
  private:
-  struct Stratum {
-    double x, y;           // lower left corner, pixels from the tile's
-    std::uint64_t number;  // counted along the image from the tile's first sample
-  };
-
   int per_pixel_;
-  std::uint64_t start_;
-  std::uint64_t samples_in_row_;  // of pixels
-  double jitter_x_;               // pixels in a step of the jitter
-  double jitter_y_;
-  std::vector<Stratum> strata_;  // of a tile
+  bool use_avx2_;
+  std::uint32_t seed_x_, seed_y_;
+  std::uint32_t samples_in_row_;  // of pixels
+  double jitter_x_, jitter_y_;    // pixels in a step of the jitter
+  // Of the strata of a tile: lower left corner, pixels from the tile's, and number, counted along
+  // the image from the tile's first sample.
+  std::vector<double> stratum_x_, stratum_y_;
+  std::vector<std::uint32_t> stratum_number_;
 };
 
 /// Rays of a camera: float, relative to a scene's origin, with a direction of length 1 along the
@@ -62,13 +67,15 @@ class JitteredSamples {
 /// rounded once.
 class RayMaker {
  public:
-  RayMaker(const Camera& camera, const Viewport& viewport, const glm::dvec3& scene_origin);
+  /// `use_avx2` may be false to get the same from the scalar twin.
+  RayMaker(const Camera& camera, const Viewport& viewport, const glm::dvec3& scene_origin,
+           bool use_avx2 = true);
 
   bool orthographic() const { return orthographic_; }
   /// The origin of all rays of a perspective camera, the direction of all of an orthographic one.
   glm::vec3 common() const { return common_; }
-  /// The other vector, of eight rays: eight values behind each pointer.
-  void vary(const EightPositions& window_px, float* x, float* y, float* z) const;
+  /// The other vector of the rays through window positions; `vectors` has room for as many.
+  void vary(std::span<const EightPositions> window_px, EightVectors* vectors) const;
 
   /// Distances along every ray. Planar depth is depth_offset() + distance.
   float near_distance() const { return near_distance_; }
@@ -77,6 +84,7 @@ class RayMaker {
 
  private:
   bool orthographic_;
+  bool use_avx2_;
   glm::vec3 common_;
   glm::dvec3 corner_;  // the varying vector at window position (0, 0)
   glm::dvec3 step_x_;  // what a pixel to the right adds to it

@@ -7,6 +7,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "common/judge/samples.h"
 #include "common/judge/truth.h"
@@ -27,10 +28,14 @@ class BareTracer {
       : maker_(camera, viewport, scene.origin()), arena_(threads) {
     build(scene);
     const JitteredSamples jittered(viewport, settings.jitter_per_pixel, settings.seed);
+    std::vector<EightPositions> positions(1 + jittered.packets_per_tile());
+    std::vector<EightVectors> directions(positions.size());
     for (int y = 0; y < viewport.height / tile_height; ++y) {
       for (int x = 0; x < viewport.width / tile_width; ++x) {
-        add(pixel_centres(x, y));
-        for (int p = 0; p < jittered.packets_per_tile(); ++p) add(jittered.packet(x, y, p));
+        positions[0] = pixel_centres(x, y);
+        jittered.tile(x, y, &positions[1]);
+        maker_.vary(positions, directions.data());
+        for (const EightVectors& eight : directions) packets_.push_back({eight, {}});
       }
     }
   }
@@ -79,16 +84,10 @@ class BareTracer {
  private:
   static constexpr std::size_t packets_in_block = 64;
 
-  struct alignas(32) Packet {
-    std::array<float, 8> x, y, z;  // directions
+  struct Packet {
+    EightVectors directions;
     std::array<unsigned, 8> hit;
   };
-
-  void add(const EightPositions& positions) {
-    Packet packet{};
-    maker_.vary(positions, packet.x.data(), packet.y.data(), packet.z.data());
-    packets_.push_back(packet);
-  }
 
   void trace(const tbb::blocked_range<std::size_t>& range) {
     RTCIntersectContext context;
@@ -104,14 +103,14 @@ class BareTracer {
     std::fill_n(rays.ray.mask, 8, 0xFFFFFFFFU);
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       Packet& packet = packets_[i];
-      std::copy_n(packet.x.data(), 8, rays.ray.dir_x);
-      std::copy_n(packet.y.data(), 8, rays.ray.dir_y);
-      std::copy_n(packet.z.data(), 8, rays.ray.dir_z);
+      std::memcpy(rays.ray.dir_x, packet.directions.x.data(), sizeof(float) * 8);
+      std::memcpy(rays.ray.dir_y, packet.directions.y.data(), sizeof(float) * 8);
+      std::memcpy(rays.ray.dir_z, packet.directions.z.data(), sizeof(float) * 8);
       std::fill_n(rays.ray.tfar, 8, maker_.far_distance());
       std::fill_n(rays.hit.geomID, 8, RTC_INVALID_GEOMETRY_ID);
       std::fill_n(rays.hit.primID, 8, none_id);
       rtcIntersect8(active.data(), scene_, &context, &rays);
-      std::copy_n(rays.hit.primID, 8, packet.hit.data());
+      std::memcpy(packet.hit.data(), rays.hit.primID, sizeof packet.hit);
     }
   }
 
