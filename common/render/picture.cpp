@@ -74,6 +74,23 @@ Inset worst_inset(const PictureInput& input) {
       }
     }
   }
+  if (best_score == half) return best;
+  // A small place: in the middle, if none of it is lost by that.
+  glm::ivec2 low = best.first + best.size;
+  glm::ivec2 high = best.first;
+  for (const glm::ivec2& pixel : input.wrong_pixels) {
+    const glm::ivec2 place(pixel.x, viewport.height - 1 - pixel.y);
+    if (glm::any(glm::lessThan(place, best.first)) ||
+        glm::any(glm::greaterThanEqual(place, best.first + best.size))) {
+      continue;
+    }
+    low = glm::min(low, place);
+    high = glm::max(high, place);
+  }
+  const glm::ivec2 middle = glm::clamp((low + high + 1 - size) / 2, glm::ivec2(0),
+                                       glm::ivec2(viewport.width, viewport.height) - size);
+  const std::uint32_t in_middle = wrong_in(middle.x, middle.y);
+  if (in_middle >= best.wrong) best = {middle, size, in_middle};
   return best;
 }
 

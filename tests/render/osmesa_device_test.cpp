@@ -238,6 +238,22 @@ TEST(OsMesaDevice, CountsTheSamplesOfABoxAsTheDepthBufferSays) {
   EXPECT_EQ(device.samples(device.query(near_box)), expected);
 }
 
+TEST(OsMesaDevice, CountsABoxThatTouchesWhatIsDrawn) {
+  Scene scene;
+  scene.meshes = {cube_mesh()};
+  scene.objects = {object_at(0, {0.0, 0.0, -3.0})};
+  scene.finish();
+  const SceneState state(scene);
+  OsMesaDevice device;
+  device.load(scene);
+  device.begin_frame(frame_of(state, {64, 64}));
+  device.draw(state.view().shown);
+  // Seen head-on, the cube's own box has its front face exactly where the cube's is.
+  const std::array<Aabb, 1> box = {Aabb{{-0.5F, -0.5F, -3.5F}, {0.5F, 0.5F, -2.5F}}};
+  const QueryId query = device.query(box);
+  EXPECT_EQ(device.samples(query), count_of(device.read_ids(), 0));
+}
+
 TEST(OsMesaDevice, DrawsOnAfterAQuery) {
   const Scene scene = wall_and_cubes();
   const SceneState state(scene);
@@ -337,7 +353,7 @@ double depth_of_square(OsMesaDevice& device, const Camera& camera, double distan
 
 TEST(OsMesaDevice, DepthAgreesWithDistanceForEveryKindOfCamera) {
   OsMesaDevice device;
-  for (const glm::dvec3 eye : {glm::dvec3(0.0), glm::dvec3(3000.0, 20.0, -700.0)}) {
+  for (const glm::dvec3 eye : {glm::dvec3(0.0), glm::dvec3(3000.123, 20.0, -700.7)}) {
     Camera camera;
     camera.pose.eye = eye;
     for (const double far_m : {100.0, std::numeric_limits<double>::infinity()}) {
