@@ -290,7 +290,7 @@ class Walks {
 /// "" if building without what the culler declares to need throws InputError.
 std::string unstated_need(const Registry& registry, const std::string& spec,
                           const Scenario& scenario, RenderDevice* device) {
-  const CullerInfo& info = registry.make(spec)->info();
+  const CullerInfo info = registry.make(spec)->info();
   const auto refused = [&](const BuildContext& context) {
     try {
       registry.make(spec)->build(scenario.scene(), context);

@@ -86,7 +86,7 @@ std::string incomplete_info(const Registry& registry, const std::string& spec) {
     const std::string fault = incomplete_entry(registry.entry(stage.name));
     if (!fault.empty()) return fault;
   }
-  const CullerInfo& info = registry.make(spec)->info();
+  const CullerInfo info = registry.make(spec)->info();
   if (info.name.empty() || info.summary.empty() || info.cost.empty() || info.limits.empty() ||
       info.sources.empty()) {
     return "the info of the chain is not complete";

@@ -206,20 +206,39 @@ SmallScene open_sheets() {
           small_viewport};
 }
 
-}  // namespace
-
-Mesh cube_mesh() {
-  Mesh mesh;
-  mesh.name = "cube";
-  for (int corner = 0; corner < 8; ++corner) {
-    mesh.positions.emplace_back((corner & 1) != 0 ? 1.0F : -1.0F, (corner & 2) != 0 ? 1.0F : -1.0F,
-                                (corner & 4) != 0 ? 1.0F : -1.0F);
-  }
-  // Counter-clockwise from outside: -x, +x, -y, +y, -z, +z.
-  mesh.triangles = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}, {0, 1, 5}, {0, 5, 4},
-                    {2, 6, 7}, {2, 7, 3}, {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
-  return mesh;
+/// Houses with small things between them, from the street and from above.
+SmallScene streets() {
+  CityParameters city;
+  city.blocks_x = 4;
+  city.blocks_z = 3;
+  city.roof_share = 0.5;
+  city.street_boxes = 20;
+  Scene scene = make_city(city);
+  scene.finish();
+  return {"streets of a small city", std::move(scene),
+          standing({camera_at({0.0, 1.7, 45.0}, {0.0, 1.7, 0.0}),
+                    camera_at({0.0, 1.7, 0.0}, {20.0, 4.0, 0.0}),
+                    camera_at({12.5, 1.7, 1.0}, {0.0, 8.0, -30.0}),
+                    camera_at({70.0, 60.0, 50.0}, {0.0, 0.0, 0.0}),
+                    orthographic_at({30.0, 100.0, 20.0}, {0.0, 0.0, 0.0}, 90.0)}),
+          small_viewport};
 }
+
+/// Rooms whose walls are seen from inside only, and doors through which one sees on.
+SmallScene rooms() {
+  Scene scene = make_room_ring({});
+  scene.finish();
+  const Aabb first = scene.cells[0].bounds;
+  const Aabb second = scene.cells[1].bounds;
+  const glm::dvec3 eye = first.center();
+  return {
+      "a ring of rooms", std::move(scene),
+      standing({camera_at(eye, second.center()), camera_at(eye, 2.0 * eye),
+                camera_at(second.center(), eye), camera_at({0.0, 60.0, 20.0}, {0.0, 0.0, 0.0})}),
+      small_viewport};
+}
+
+}  // namespace
 
 Mesh sphere_mesh(int rings) {
   Mesh mesh;
@@ -252,12 +271,7 @@ Mesh sphere_mesh(int rings) {
 }
 
 glm::dmat4x3 placed(const glm::dvec3& offset, const glm::dvec3& scale) {
-  glm::dmat4x3 transform(0.0);
-  transform[0].x = scale.x;
-  transform[1].y = scale.y;
-  transform[2].z = scale.z;
-  transform[3] = offset;
-  return transform;
+  return box_transform(offset, scale);
 }
 
 std::vector<SmallScene> small_scenes() {
@@ -270,6 +284,8 @@ std::vector<SmallScene> small_scenes() {
   scenes.push_back(moving_field());
   scenes.push_back(behind_a_wall());
   scenes.push_back(open_sheets());
+  scenes.push_back(streets());
+  scenes.push_back(rooms());
   return scenes;
 }
 

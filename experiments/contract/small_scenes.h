@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/scene/generators/generators.h"
 #include "common/scene/path.h"
 
 namespace vislab {
@@ -19,8 +20,6 @@ struct SmallScene {
 /// Deterministic; needs no file.
 std::vector<SmallScene> small_scenes();
 
-/// A closed cube from -1 to 1: 12 triangles.
-Mesh cube_mesh();
 /// A closed sphere of radius 1 around 0, in `rings` bands of 2 * rings sectors each; rings >= 2.
 Mesh sphere_mesh(int rings);
 /// Moves by `offset` after scaling by `scale`.
