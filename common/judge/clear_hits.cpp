@@ -7,8 +7,9 @@
 namespace vislab {
 namespace {
 
-/// Twice the distance asked for: the factors are float, and barycentrics come from a float ray.
-constexpr double margin_px = 2.0 * disputed_edge_px;
+/// More than the distance asked for: float rays and vertices move a hit by some thousandths of a
+/// pixel.
+constexpr double margin_px = 1.25 * disputed_edge_px;
 /// Bound on the error of a barycentric coordinate.
 constexpr double barycentric_error = 4e-6;
 

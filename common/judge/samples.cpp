@@ -21,7 +21,7 @@ bool has_avx2() { return __builtin_cpu_supports("avx2") != 0; }
 }
 
 struct JitterInput {
-  std::uint32_t seed_x, seed_y, first_number;
+  std::uint32_t seed, twist, first_number;
   double tile_x, tile_y;      // of the tile's lower left corner, pixels
   double jitter_x, jitter_y;  // pixels in a step
   const double* stratum_x;
@@ -41,10 +41,9 @@ struct JitterInput {
     std::int32_t steps_x[8];
     std::int32_t steps_y[8];
     for (int lane = 0; lane < 8; ++lane) {
-      const std::uint32_t hash_x = mix(local.first_number + number[lane] + local.seed_x);
-      const std::uint32_t hash_y = mix(hash_x ^ local.seed_y);
-      steps_x[lane] = static_cast<std::int32_t>((hash_x >> 7U) | 1U);
-      steps_y[lane] = static_cast<std::int32_t>((hash_y >> 7U) | 1U);
+      const std::uint32_t hash = mix(local.first_number + number[lane] + local.seed) ^ local.twist;
+      steps_x[lane] = static_cast<std::int32_t>((hash >> 16U) * 2U + 1U);
+      steps_y[lane] = static_cast<std::int32_t>((hash & 0xFFFFU) * 2U + 1U);
     }
     for (int lane = 0; lane < 8; ++lane) {
       x[lane] = local.tile_x + stratum_x[lane] + steps_x[lane] * local.jitter_x;
@@ -111,15 +110,15 @@ JitteredSamples::JitteredSamples(const Viewport& viewport, int per_pixel, std::u
       use_avx2_(use_avx2 && has_avx2()),
       samples_in_row_(static_cast<std::uint32_t>(viewport.width) * per_pixel) {
   const std::uint64_t seeds = Random(seed).bits();
-  seed_x_ = static_cast<std::uint32_t>(seeds);
-  seed_y_ = static_cast<std::uint32_t>(seeds >> 32U);
+  seed_ = static_cast<std::uint32_t>(seeds);
+  twist_ = static_cast<std::uint32_t>(seeds >> 32U);
   int rows = 1;
   for (int divisor = 1; divisor * divisor <= per_pixel; ++divisor) {
     if (per_pixel % divisor == 0) rows = divisor;
   }
   const int columns = per_pixel / rows;
-  jitter_x_ = 0x1p-25 / columns;
-  jitter_y_ = 0x1p-25 / rows;
+  jitter_x_ = 0x1p-17 / columns;
+  jitter_y_ = 0x1p-17 / rows;
   for (int pixel = 0; pixel < tile_width * tile_height; ++pixel) {
     const int x = pixel % tile_width;
     const int y = pixel / tile_width;
@@ -134,8 +133,8 @@ JitteredSamples::JitteredSamples(const Viewport& viewport, int per_pixel, std::u
 void JitteredSamples::tile(int tile_x, int tile_y, EightPositions* packets) const {
   // The number of a sample may wrap around in images of more than 2^32 samples: the hash then gives
   // the same jitter to pixels that are far from each other.
-  const JitterInput in{seed_x_,
-                       seed_y_,
+  const JitterInput in{seed_,
+                       twist_,
                        static_cast<std::uint32_t>(tile_y * tile_height) * samples_in_row_ +
                            static_cast<std::uint32_t>(tile_x * tile_width) * per_pixel_,
                        static_cast<double>(tile_x * tile_width),

@@ -36,7 +36,7 @@ EightPositions pixel_centres(int tile_x, int tile_y);
 /// Sample set J: every pixel is divided into columns * rows strata, as near to squares as the
 /// number of samples allows, with one sample in each at a place that a hash of (seed, pixel,
 /// sample) gives. Any sample can be computed again, which is why truth need not keep them. Inside
-/// its stratum a sample lies at odd multiples of 2^-25 of the stratum's size, so never on an edge
+/// its stratum a sample lies at odd multiples of 2^-17 of the stratum's size, so never on an edge
 /// of a pixel.
 class JitteredSamples {
  public:
@@ -53,7 +53,8 @@ class JitteredSamples {
  private:
   int per_pixel_;
   bool use_avx2_;
-  std::uint32_t seed_x_, seed_y_;
+  std::uint32_t seed_;            // shifts the sequence of hashes
+  std::uint32_t twist_;           // flips bits of every hash
   std::uint32_t samples_in_row_;  // of pixels
   double jitter_x_, jitter_y_;    // pixels in a step of the jitter
   // Of the strata of a tile: lower left corner, pixels from the tile's, and number, counted along
