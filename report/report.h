@@ -14,8 +14,8 @@ namespace vislab {
 struct ReportInput {
   std::vector<BlockSummary> blocks;
   const Registry* cullers = nullptr;  // for the method pages
-  /// Writes a picture of a block's most telling frame under a culler to `file` (PNG), as `vislab show`
-  /// does; returns a caption. Empty function: no pictures.
+  /// Writes a picture of a block's most telling frame under a culler to `file` (PNG), as `vislab
+  /// show` does; returns a caption. Empty function: no pictures.
   std::function<std::string(const BlockSummary& block, const CellSummary& cell,
                             const std::filesystem::path& file)>
       picture;

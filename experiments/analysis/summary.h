@@ -2,23 +2,22 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "experiments/analysis/statistics.h"
 #include "experiments/results/store.h"
 
 namespace vislab {
-
-/// A value with its 95 % bootstrap interval.
-struct Estimate {
-  double value = 0.0, low = 0.0, high = 0.0;
-};
 
 /// Statistics over all frames; each frame counts with the median of its rounds.
 struct TimeSummary {
   Estimate median;              // of the frames; the interval comes from resampling rounds
   double p95 = 0.0, p99 = 0.0;  // over all samples of all rounds
   double worst = 0.0;
+
+  bool measured() const { return median.measured(); }
 };
 
 struct CellSummary {
@@ -33,6 +32,7 @@ struct CellSummary {
   Repeatability repeatability = Repeatability::stateless;
   Granularity granularity = Granularity::object;
   int rounds = 0;
+  std::string machine;  // id of the one that measured it
 
   // Accuracy, sums over all frames unless it says otherwise.
   bool judged = false;       // false: the values below mean nothing
@@ -42,16 +42,17 @@ struct CellSummary {
   std::uint64_t disputed_px = 0;  // lost but excused
   bool drawn = false;
   std::uint64_t image_px = 0, disputed_image_px = 0;
-  double over = 0.0, over_objects = 0.0, under = 0.0;  // ratios of sums over all frames
-  double recall = 0.0;                                 // hidden triangles culled / hidden triangles
+  // Ratios of sums over all frames; NaN where nothing is visible, or for recall nothing is hidden.
+  double over = 0.0, over_objects = 0.0, under = 0.0;
+  double recall = 0.0;  // hidden triangles culled / hidden triangles
   double submitted_triangles = 0.0, visible_triangles = 0.0, kept_objects = 0.0;  // per frame
 
-  // Times. Zero samples if the cell was not timed.
+  // Times; NaN if the cell was not timed.
   TimeSummary update_us, cull_us, draw_ms, frame_ms;
   double build_ms = 0.0;
   double modelled_frame_ms = 0.0;
   std::uint64_t bytes = 0;
-  /// frame_ms of this cell / frame_ms of none, paired by frame and round.
+  /// frame_ms of this cell / frame_ms of none, paired by frame and round; NaN without such pairs.
   Estimate against_none;
   /// frame_ms of the oracle of the same level / frame_ms of this cell, paired.
   Estimate efficiency;
@@ -79,8 +80,18 @@ struct BlockSummary {
   std::vector<std::string> machines;           // ids of all machines that measured cells here
 };
 
-/// All blocks in the folder, by scene and path. Cells without verdicts of the present judge are
-/// summarised without accuracy (`judged` is false).
-std::vector<BlockSummary> summarise(const ResultStore& store);
+/// A cell and what the present judge makes of it (empty: nothing yet).
+struct JudgedCell {
+  ResultCell cell;
+  std::optional<CellVerdicts> verdicts;
+};
+
+/// The blocks that the cells belong to, by scene and path. Cells without verdicts are summarised
+/// without accuracy (`judged` is false). Cells that no longer count (of methods mended since) are
+/// the caller's to leave out.
+std::vector<BlockSummary> summarise(const std::vector<JudgedCell>& cells);
+
+/// The same for all cells in the folder, with the verdicts of the judge whose hash is `judge`.
+std::vector<BlockSummary> summarise(const ResultStore& store, const std::string& judge);
 
 }  // namespace vislab

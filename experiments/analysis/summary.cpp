@@ -1,0 +1,277 @@
+#include "experiments/analysis/summary.h"
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+
+namespace vislab {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* none_chain = "none";
+
+bool is_none(const CellKey& key) { return key.chain == none_chain; }
+
+bool is_oracle(const std::string& chain) {
+  return chain.starts_with("oracle") && chain.find('>') == std::string::npos;
+}
+
+/// nan where there is nothing to compare with.
+double ratio(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? nan : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+TimeSummary summarise_time(const std::vector<Round>& rounds, std::vector<double> Round::*samples) {
+  SampleGrid grid;
+  std::vector<double> all;
+  for (const Round& round : rounds) {
+    grid.push_back(round.*samples);
+    all.insert(all.end(), grid.back().begin(), grid.back().end());
+  }
+  TimeSummary time;
+  time.median = median_of_frames(grid);
+  time.worst = all.empty() ? nan : *std::ranges::max_element(all);
+  time.p95 = quantile(all, 0.95);
+  time.p99 = quantile(std::move(all), 0.99);
+  return time;
+}
+
+/// Frame times of an anchor in the same rounds as the cell's, by session and number.
+using RoundTimes = std::map<std::pair<std::string, int>, RoundSamples>;
+
+RoundTimes times_of(const std::vector<AnchorRound>& rounds) {
+  RoundTimes times;
+  for (const AnchorRound& round : rounds) times[{round.session, round.number}] = round.frame_ms;
+  return times;
+}
+
+/// The cell's frame times and the anchor's where both measured the same round.
+struct Pairs {
+  SampleGrid cell, anchor;
+};
+
+Pairs pair_rounds(const ResultCell& cell, const RoundTimes& anchor) {
+  Pairs pairs;
+  for (const Round& round : cell.rounds) {
+    const auto found = anchor.find({round.session, round.number});
+    if (found == anchor.end() || found->second.size() != round.frame_ms.size()) continue;
+    pairs.cell.push_back(round.frame_ms);
+    pairs.anchor.push_back(found->second);
+  }
+  return pairs;
+}
+
+/// Times of the anchor that was measured beside the cell; empty if there was none.
+RoundTimes anchor_times(const ResultCell& cell, const std::string& chain) {
+  const auto found = cell.anchors.find(chain);
+  return found == cell.anchors.end() ? RoundTimes{} : times_of(found->second);
+}
+
+std::string oracle_of(Granularity granularity) {
+  return "oracle[level=" + std::string(to_string(granularity)) + "]";
+}
+
+/// A cell as its own anchor pairs with itself, whether or not the harness wrote it down twice.
+RoundTimes own_times(const ResultCell& cell) {
+  RoundTimes times;
+  for (const Round& round : cell.rounds) times[{round.session, round.number}] = round.frame_ms;
+  return times;
+}
+
+RoundTimes anchor_or_own(const ResultCell& cell, const std::string& chain) {
+  const bool own = cell.key.chain == chain && cell.key.replicate == 0;
+  return own ? own_times(cell) : anchor_times(cell, chain);
+}
+
+void summarise_accuracy(const CellVerdicts& verdicts, CellSummary& summary) {
+  std::uint64_t visible_triangles = 0, visible_objects = 0, kept_objects = 0;
+  std::uint64_t over_triangles = 0, over_objects = 0, under_triangles = 0, hidden_triangles = 0;
+  for (const Verdict& v : verdicts.frames) {
+    summary.pixels += v.pixels;
+    summary.false_px += v.false_px;
+    summary.max_false_px = std::max(summary.max_false_px, v.max_false_px);
+    summary.false_objects += v.false_objects;
+    summary.false_triangles += v.false_triangles;
+    summary.false_jittered += v.false_jittered;
+    summary.jittered += v.jittered;
+    summary.disputed_px += v.disputed_lost_px;
+    visible_triangles += v.visible_triangles;
+    visible_objects += v.visible_objects;
+    kept_objects += v.kept_objects;
+    over_triangles += v.over_triangles_count;
+    over_objects += v.over_objects_count;
+    under_triangles += v.under_triangles_count;
+    hidden_triangles += v.scene_triangles - std::min(v.scene_triangles, v.visible_triangles);
+  }
+  for (const ImageVerdict& image : verdicts.images) {
+    summary.image_px += image.image_px;
+    summary.disputed_image_px += image.disputed_image_px;
+  }
+  summary.drawn = !verdicts.images.empty();
+  summary.judged = !verdicts.frames.empty();
+  summary.over = ratio(over_triangles, visible_triangles);
+  summary.over_objects = ratio(over_objects, visible_objects);
+  summary.under = ratio(under_triangles, visible_triangles);
+  summary.recall =
+      ratio(hidden_triangles - std::min(hidden_triangles, over_triangles), hidden_triangles);
+  summary.visible_triangles = ratio(visible_triangles, verdicts.frames.size());
+  summary.kept_objects = ratio(kept_objects, verdicts.frames.size());
+}
+
+CellSummary summarise_cell(const JudgedCell& judged) {
+  const ResultCell& cell = judged.cell;
+  CellSummary summary;
+  summary.id = cell.key.id();
+  summary.culler = cell.culler;
+  summary.replicate = cell.key.replicate;
+  if (summary.replicate > 0 && !summary.culler.ends_with("(again)")) summary.culler += " (again)";
+  summary.canonical = cell.key.chain;
+  summary.anchor = is_none(cell.key) || is_oracle(cell.key.chain);
+  summary.status = cell.status;
+  summary.reason = cell.reason;
+  summary.guarantee = cell.guarantee;
+  summary.repeatability = cell.repeatability;
+  summary.granularity = cell.granularity;
+  summary.rounds = static_cast<int>(cell.rounds.size());
+  if (const auto found = cell.context.find("machine"); found != cell.context.end()) {
+    summary.machine = found->second;
+  }
+  summary.build_ms = cell.build_ms;
+  summary.bytes = cell.bytes;
+
+  std::uint64_t submitted = 0;
+  std::map<std::string, std::uint64_t> counters;
+  for (const CellFrame& frame : cell.frames) {
+    submitted += frame.submitted_triangles;
+    for (const auto& [name, value] : frame.counters) counters[name] += value;
+  }
+  summary.submitted_triangles = ratio(submitted, cell.frames.size());
+  for (const auto& [name, value] : counters) {
+    summary.counters[name] = ratio(value, cell.frames.size());
+  }
+  summary.over = summary.over_objects = summary.under = summary.recall = nan;
+  summary.visible_triangles = summary.kept_objects = nan;
+  if (judged.verdicts) summarise_accuracy(*judged.verdicts, summary);
+
+  summary.update_us = summarise_time(cell.rounds, &Round::update_us);
+  summary.cull_us = summarise_time(cell.rounds, &Round::cull_us);
+  summary.draw_ms = summarise_time(cell.rounds, &Round::draw_ms);
+  summary.frame_ms = summarise_time(cell.rounds, &Round::frame_ms);
+  const Pairs none = pair_rounds(cell, anchor_or_own(cell, none_chain));
+  summary.against_none = paired_ratio(none.cell, none.anchor);
+  const Pairs oracle = pair_rounds(cell, anchor_or_own(cell, oracle_of(cell.granularity)));
+  summary.efficiency = paired_ratio(oracle.anchor, oracle.cell);
+  return summary;
+}
+
+/// What a block is: equal for all cells that may be compared.
+auto block_key(const ResultCell& cell) {
+  return std::tuple(cell.scene, cell.path, cell.key.scene_hash, cell.key.path_hash,
+                    cell.key.viewport.width, cell.key.viewport.height, cell.key.device,
+                    cell.key.threads, cell.key.seed);
+}
+
+/// none, its control, the oracles from coarse to fine, then all others by name.
+auto cell_order(const CellSummary& cell) {
+  const int group = cell.canonical == none_chain ? 0 : cell.anchor ? 1 : 2;
+  return std::tuple(group, group == 0 ? std::string() : cell.culler, cell.replicate, cell.id);
+}
+
+/// Test cost + submitted triangles × what a triangle costs when everything is drawn.
+void model_frame_times(BlockSummary& block) {
+  const auto none = std::ranges::find_if(block.cells, [](const CellSummary& cell) {
+    return cell.canonical == none_chain && cell.replicate == 0;
+  });
+  const double triangle_ms = none == block.cells.end() || !(none->submitted_triangles > 0.0)
+                                 ? nan
+                                 : none->draw_ms.median.value / none->submitted_triangles;
+  for (CellSummary& cell : block.cells) {
+    cell.modelled_frame_ms = (cell.update_us.median.value + cell.cull_us.median.value) / 1000.0 +
+                             cell.submitted_triangles * triangle_ms;
+  }
+}
+
+BlockSummary summarise_block(const std::vector<const JudgedCell*>& cells) {
+  const ResultCell& first = cells.front()->cell;
+  BlockSummary block;
+  block.scene = first.scene;
+  block.scene_description = first.scene_description;
+  block.path = first.path;
+  block.scene_hash = first.key.scene_hash;
+  block.path_hash = first.key.path_hash;
+  block.viewport = first.key.viewport;
+  block.device = first.key.device;
+  block.threads = first.key.threads;
+  block.seed = first.key.seed;
+  block.objects = first.scene_objects;
+  block.triangles = first.scene_triangles;
+  block.context = first.context;
+  block.noise = Estimate::none();
+  for (const JudgedCell* cell : cells) {
+    block.frames = std::max(block.frames, static_cast<int>(cell->cell.frames.size()));
+    block.cells.push_back(summarise_cell(*cell));
+    const CellSummary& summary = block.cells.back();
+    if (is_none(cell->cell.key) && summary.replicate > 0) block.noise = summary.against_none;
+    // The floor belongs to the frames, not to the culler: every drawn cell has the same.
+    if (block.floor_pixels == 0 && summary.drawn) {
+      block.floor_pixels = summary.pixels;
+      block.floor_disputed_px = cell->verdicts->floor_disputed_px;
+      block.floor_undisputed_px = cell->verdicts->floor_undisputed_px;
+    }
+    if (!summary.machine.empty() && !std::ranges::count(block.machines, summary.machine)) {
+      block.machines.push_back(summary.machine);
+    }
+  }
+  std::ranges::sort(block.machines);
+  std::ranges::sort(block.cells, {}, cell_order);
+  model_frame_times(block);
+  return block;
+}
+
+}  // namespace
+
+double CellSummary::metric(const std::string& name) const {
+  const auto if_judged = [&](std::uint64_t count) {
+    return judged ? static_cast<double>(count) : nan;
+  };
+  if (name == "false_px") return if_judged(false_px);
+  if (name == "max_false_px") return if_judged(max_false_px);
+  if (name == "false_objects") return if_judged(false_objects);
+  if (name == "false_triangles") return if_judged(false_triangles);
+  if (name == "image_px") return drawn ? static_cast<double>(image_px) : nan;
+  if (name == "disputed_px") return if_judged(disputed_px);
+  if (name == "over") return over;
+  if (name == "over_objects") return over_objects;
+  if (name == "under") return under;
+  if (name == "recall") return recall;
+  if (name == "build_ms") return build_ms;
+  if (name == "update_us") return update_us.median.value;
+  if (name == "cull_us") return cull_us.median.value;
+  if (name == "draw_ms") return draw_ms.median.value;
+  if (name == "frame_ms") return frame_ms.median.value;
+  if (name == "modelled_frame_ms") return modelled_frame_ms;
+  if (name == "bytes") return static_cast<double>(bytes);
+  if (name == "submitted_triangles") return submitted_triangles;
+  if (name == "efficiency") return efficiency.value;
+  if (const auto found = counters.find(name); found != counters.end()) return found->second;
+  return nan;
+}
+
+std::vector<BlockSummary> summarise(const std::vector<JudgedCell>& cells) {
+  std::map<decltype(block_key(cells.front().cell)), std::vector<const JudgedCell*>> blocks;
+  for (const JudgedCell& cell : cells) blocks[block_key(cell.cell)].push_back(&cell);
+  std::vector<BlockSummary> summaries;
+  for (const auto& [key, members] : blocks) summaries.push_back(summarise_block(members));
+  return summaries;
+}
+
+std::vector<BlockSummary> summarise(const ResultStore& store, const std::string& judge) {
+  std::vector<JudgedCell> cells;
+  for (ResultCell& cell : store.load_all()) {
+    std::optional<CellVerdicts> verdicts = store.load_verdicts(cell.key.id(), judge);
+    cells.push_back({std::move(cell), std::move(verdicts)});
+  }
+  return summarise(cells);
+}
+
+}  // namespace vislab

@@ -1,0 +1,408 @@
+#include "report/chart.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+
+#include "report/chart_axis.h"
+#include "report/chart_labels.h"
+#include "report/format.h"
+
+namespace vislab {
+namespace {
+
+// Everything in units of the drawing (1 unit = 1/4 mm as shown), y upwards.
+constexpr double chart_width = 680.0;
+constexpr double chart_height = 360.0;
+constexpr double panel_left[2] = {92.0, 414.0};
+constexpr double panel_width = 256.0;
+constexpr double y_title_distance[2] = {82.0, 46.0};  // from the panel's left
+constexpr double top_margin = 22.0;
+constexpr double axis_height = 50.0;  // tick labels and title below a panel
+constexpr double legend_row = 14.0;
+constexpr double legend_indent = 14.0;
+constexpr double legend_text_left = 24.0;  // from the left of an entry's mark
+constexpr double legend_letter = 5.6;      // mean width of a letter
+constexpr double legend_gap = 18.0;        // between columns
+constexpr double mark_radius = 4.5;
+constexpr double digit_width = 6.0;
+constexpr double label_height = 10.0;
+
+/// The palette of Okabe and Ito ("Color Universal Design", 2008), which colour-blind readers can
+/// tell apart; its yellow is left out, because it fades on white.
+constexpr std::array<const char*, 6> method_colours{"#0072B2", "#D55E00", "#009E73",
+                                                    "#CC79A7", "#E69F00", "#56B4E9"};
+/// gnuplot's filled square, circle, triangles, diamond and pentagon.
+constexpr std::array<int, 6> method_shapes{7, 5, 9, 13, 11, 15};
+constexpr const char* reference_colour = "#000000";
+constexpr const char* hull_style = "lw 1.6 lc rgb '#9A9A9A'";
+constexpr const char* none_style = "dt (2,4) lw 1.2 lc rgb '#777777'";
+constexpr const char* zero_band_colour = "#EEF2F6";
+constexpr int none_shape = 1, none_again_shape = 2;  // plus and cross
+constexpr std::array<int, 4> oracle_shapes{6, 4, 8, 12};
+
+struct Mark {
+  const CellSummary* cell = nullptr;
+  std::size_t number = 0;  // in charts and tables
+  std::string colour;
+  int shape = 0;
+};
+
+struct Panel {
+  std::string title, y_title;
+  std::vector<double> values;
+  ChartAxis axis;
+};
+
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '\n') {
+      result += "\\n";
+      continue;
+    }
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + "\"";
+}
+
+std::vector<Mark> marks_of(const BlockSummary& block) {
+  const std::vector<const CellSummary*> charted = charted_cells(block);
+  std::vector<Mark> marks;
+  std::size_t methods = 0;
+  std::size_t oracles = 0;
+  for (std::size_t i = 0; i < block.cells.size(); ++i) {
+    const CellSummary& cell = block.cells[i];
+    if (std::ranges::count(charted, &cell) == 0) continue;
+    Mark mark{&cell, i + 1, reference_colour, none_shape};
+    if (cell.anchor && cell.canonical == "none") {
+      mark.shape = cell.replicate == 0 ? none_shape : none_again_shape;
+    } else if (cell.anchor) {
+      mark.shape = oracle_shapes[oracles++ % oracle_shapes.size()];
+    } else {
+      // Shapes go on by one more after each turn of the colours, so that pairs do not repeat soon.
+      const std::size_t turn = methods / method_colours.size();
+      mark.colour = method_colours[methods % method_colours.size()];
+      mark.shape = method_shapes[(methods + turn) % method_shapes.size()];
+      ++methods;
+    }
+    marks.push_back(mark);
+  }
+  return marks;
+}
+
+/// How the legend fits under the panels: entries run down the columns.
+struct Legend {
+  std::vector<double> column_left;
+  std::size_t rows = 0;
+
+  double height() const { return static_cast<double>(rows) * legend_row; }
+  double left(std::size_t entry) const { return column_left[entry / rows]; }
+  double middle(std::size_t entry) const {
+    return height() - legend_row * (0.5 + static_cast<double>(entry % rows));
+  }
+};
+
+/// The fewest rows whose columns fit beside each other; `texts` in their order.
+Legend legend_for(const std::vector<std::string>& texts) {
+  Legend legend;
+  for (legend.rows = 1; legend.rows <= texts.size(); ++legend.rows) {
+    legend.column_left.clear();
+    double right = legend_indent;
+    for (std::size_t first = 0; first < texts.size(); first += legend.rows) {
+      legend.column_left.push_back(right);
+      std::size_t longest = 0;
+      for (std::size_t i = first; i < std::min(first + legend.rows, texts.size()); ++i) {
+        longest = std::max(longest, texts[i].size());
+      }
+      right += legend_text_left + legend_letter * static_cast<double>(longest) + legend_gap;
+    }
+    if (right - legend_gap <= chart_width) break;
+  }
+  legend.rows = std::min(legend.rows, texts.size());
+  return legend;
+}
+
+std::string ticks(const ChartAxis& axis) {
+  std::string list;
+  for (const auto& [position, label] : axis.ticks) {
+    std::ostringstream entry;
+    entry << quoted(label) << ' ' << position;
+    list += (list.empty() ? "" : ", ") + entry.str();
+  }
+  return "(" + list + ")";
+}
+
+void set_axis(std::ostream& out, char name, const ChartAxis& axis) {
+  out << (axis.logarithmic ? "set logscale " : "unset logscale ") << name << '\n'
+      << "set " << name << "range [" << axis.low << ':' << axis.high << "]\n"
+      << "set " << name << "tics " << ticks(axis) << '\n';
+}
+
+class ChartWriter {
+ public:
+  ChartWriter(const BlockSummary& block, std::ostream& out)
+      : out_(out), marks_(marks_of(block)), timed_(has_time_axis(block)) {
+    std::vector<double> ends;
+    for (const Mark& mark : marks_) {
+      const Estimate x = x_of(*mark.cell);
+      x_.push_back(x);
+      ends.insert(ends.end(), {x.low, x.value, x.high});
+      if (mark.cell->canonical == "none" && mark.cell->replicate == 0) none_x_ = x.value;
+    }
+    x_axis_ = positive_axis(ends);
+    add_panels();
+    for (const Mark& mark : marks_) {
+      legend_texts_.push_back(std::to_string(mark.number) + "  " + mark.cell->culler);
+    }
+    legend_texts_.emplace_back("Pareto hull of the methods");
+    if (none_x_ > 0.0) {
+      legend_texts_.emplace_back(timed_ ? "time of drawing everything" : "drawing everything");
+    }
+    legend_ = legend_for(legend_texts_);
+    panel_bottom_ = legend_.height() + axis_height;
+    panel_height_ = chart_height - top_margin - panel_bottom_;
+  }
+
+  void write() {
+    for (std::size_t i = 0; i < panels_.size(); ++i) write_panel(i);
+    write_legend();
+  }
+
+ private:
+  Estimate x_of(const CellSummary& cell) const {
+    if (timed_) return cell.frame_ms.median;
+    return {cell.submitted_triangles, cell.submitted_triangles, cell.submitted_triangles};
+  }
+
+  void add_panels() {
+    std::uint64_t pixels = 0;
+    Panel errors{"a   Errors", "false pixels (false_px)", {}, {}};
+    Panel over{"b   Over-inclusion", "kept but invisible ÷ visible (over)", {}, {}};
+    for (const Mark& mark : marks_) {
+      pixels = std::max(pixels, mark.cell->pixels);
+      errors.values.push_back(static_cast<double>(mark.cell->false_px));
+      over.values.push_back(std::isnan(mark.cell->over) ? 0.0 : mark.cell->over);
+    }
+    errors.axis = logarithmic_axis(errors.values, 10.0, "0 of\n" + format_count(pixels));
+    const double most = over.values.empty() ? 0.0 : std::ranges::max(over.values);
+    over.axis = most > 0.0 ? logarithmic_axis(over.values, most, "0") : positive_axis({1.0});
+    panels_ = {std::move(errors), std::move(over)};
+  }
+
+  double pixel_x(std::size_t panel, double value) const {
+    return panel_left[panel] + panel_width * x_axis_.share(value);
+  }
+  double pixel_y(const Panel& panel, double value) const {
+    return panel_bottom_ + panel_height_ * panel.axis.share(value);
+  }
+
+  static void margins(std::ostream& out, double left, double bottom, double width, double height) {
+    out << "set lmargin at screen " << left / chart_width << '\n'
+        << "set rmargin at screen " << (left + width) / chart_width << '\n'
+        << "set bmargin at screen " << bottom / chart_height << '\n'
+        << "set tmargin at screen " << (bottom + height) / chart_height << '\n';
+  }
+
+  void write_panel(std::size_t index) {
+    const Panel& panel = panels_[index];
+    out_ << "unset label\nunset arrow\nunset object\nset border 3 lc rgb '#444444'\n"
+         << "set tics nomirror out scale 0.5\nset grid xtics ytics lt 1 lw 0.5 lc rgb '#E4E4E4'\n"
+         << "set title " << quoted(panel.title) << " offset 0,-0.6 font ',12'\n"
+         << "unset ylabel\nset xlabel "
+         << quoted(timed_ ? "time of a frame, frame_ms (ms)" : "triangles submitted per frame")
+         << " offset 0,0.5\n"
+         // gnuplot would place the title by the widest tick label, and outside the drawing.
+         << "set label " << quoted(panel.y_title) << " at screen "
+         << (panel_left[index] - y_title_distance[index]) / chart_width << ','
+         << (panel_bottom_ + 0.5 * panel_height_) / chart_height << " center rotate by 90\n";
+    set_axis(out_, 'x', x_axis_);
+    set_axis(out_, 'y', panel.axis);
+    margins(out_, panel_left[index], panel_bottom_, panel_width, panel_height_);
+    const double right = panel_left[index] + panel_width;
+    const double top = panel_bottom_ + panel_height_;
+    if (panel.axis.logarithmic) {
+      // Zero has no place on a logarithmic axis: a band sets it apart.
+      out_ << "set object rectangle from graph 0, graph 0 to graph 1, first "
+           << panel.axis.zero_band_top << " fc rgb '" << zero_band_colour
+           << "' fs solid noborder behind\n";
+    }
+    std::vector<ChartBox> lines;
+    if (none_x_ > 0.0) {
+      const double x = pixel_x(index, none_x_);
+      lines.push_back({x, panel_bottom_, x, top});
+      write_line(lines.back(), none_style);
+    }
+    for (const ChartBox& step : hull_steps(index, {panel_left[index], panel_bottom_, right, top})) {
+      lines.push_back(step);
+      write_line(step, hull_style);
+    }
+    write_numbers(index, lines);
+    out_ << "$points << END\n";
+    for (std::size_t i = 0; i < marks_.size(); ++i) {
+      out_ << x_[i].value << ' ' << panel.axis.position(panel.values[i]) << ' ' << x_[i].low << ' '
+           << x_[i].high << '\n';
+    }
+    out_ << "END\n";
+    plot_points("1:2:3:4 with xerrorbars");
+  }
+
+  void write_line(const ChartBox& line, const char* style) {
+    out_ << "set arrow from screen " << line.left / chart_width << ',' << line.bottom / chart_height
+         << " to screen " << line.right / chart_width << ',' << line.top / chart_height
+         << " nohead " << style << " back\n";
+  }
+
+  /// The hull of all methods that could be used (the oracles and the control are not among them) as
+  /// a staircase: what lies to the right of it and above it is beaten by some method.
+  std::vector<ChartBox> hull_steps(std::size_t index, const ChartBox& frame) const {
+    std::vector<double> x;
+    std::vector<double> y;
+    for (std::size_t i = 0; i < marks_.size(); ++i) {
+      const CellSummary& cell = *marks_[i].cell;
+      if (cell.anchor && !(cell.canonical == "none" && cell.replicate == 0)) continue;
+      x.push_back(pixel_x(index, x_[i].value));
+      y.push_back(pixel_y(panels_[index], panels_[index].values[i]));
+    }
+    std::vector<ChartBox> steps;
+    double from = frame.top;
+    const std::vector<std::size_t> hull = pareto_hull(x, y);
+    for (std::size_t i = 0; i < hull.size(); ++i) {
+      const double px = x[hull[i]];
+      const double py = y[hull[i]];
+      steps.push_back({px, py, px, from});
+      steps.push_back({px, py, i + 1 < hull.size() ? x[hull[i + 1]] : frame.right, py});
+      from = py;
+    }
+    return steps;
+  }
+
+  void write_numbers(std::size_t index, const std::vector<ChartBox>& lines) {
+    const Panel& panel = panels_[index];
+    std::vector<LabelRequest> requests;
+    std::vector<ChartBox> obstacles;
+    for (const ChartBox& line : lines) {
+      obstacles.push_back({line.left - 1.0, line.bottom - 1.0, line.right + 1.0, line.top + 1.0});
+    }
+    for (std::size_t i = 0; i < marks_.size(); ++i) {
+      const double x = pixel_x(index, x_[i].value);
+      const double y = pixel_y(panel, panel.values[i]);
+      const std::string text = std::to_string(marks_[i].number);
+      requests.push_back({x, y, digit_width * static_cast<double>(text.size()), label_height});
+      obstacles.push_back({x - mark_radius, y - mark_radius, x + mark_radius, y + mark_radius});
+      obstacles.push_back(
+          {pixel_x(index, x_[i].low), y - 1.0, pixel_x(index, x_[i].high), y + 1.0});
+    }
+    const ChartBox frame{panel_left[index] + 2.0, panel_bottom_ + 1.0,
+                         panel_left[index] + panel_width + 8.0, panel_bottom_ + panel_height_};
+    const std::vector<PlacedLabel> labels = place_labels(requests, obstacles, frame);
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      const PlacedLabel& label = labels[i];
+      if (label.leader) write_leader(requests[i], label);
+      out_ << "set label " << quoted(std::to_string(marks_[i].number)) << " at screen "
+           << label.x / chart_width << ',' << label.y / chart_height
+           << " center font ',10' front\n";
+    }
+  }
+
+  /// From the edge of the mark to the edge of the number.
+  void write_leader(const LabelRequest& point, const PlacedLabel& label) {
+    const double dx = label.x - point.x;
+    const double dy = label.y - point.y;
+    const double length = std::hypot(dx, dy);
+    const double begin = mark_radius / length;
+    const double end = 1.0 - 0.5 * label_height / length;
+    out_ << "set arrow from screen " << (point.x + begin * dx) / chart_width << ','
+         << (point.y + begin * dy) / chart_height << " to screen "
+         << (point.x + end * dx) / chart_width << ',' << (point.y + end * dy) / chart_height
+         << " nohead lw 0.6 lc rgb '#777777' front\n";
+  }
+
+  void write_legend() {
+    out_ << "unset label\nunset arrow\nunset object\nunset title\nunset xlabel\nunset "
+            "ylabel\nunset border\n"
+         << "unset tics\nunset grid\nunset logscale\nset xrange [0:" << chart_width
+         << "]\nset yrange [0:" << legend_.height() << "]\n";
+    margins(out_, 0.0, 0.0, chart_width, legend_.height());
+    for (std::size_t i = 0; i < legend_texts_.size(); ++i) {
+      const double left = legend_.left(i);
+      const double middle = legend_.middle(i);
+      out_ << "set label " << quoted(legend_texts_[i]) << " at first " << left + legend_text_left
+           << ',' << middle << " left font ',10.5'\n";
+      if (i < marks_.size()) continue;
+      out_ << "set arrow from first " << left << ',' << middle << " to first " << left + 18.0 << ','
+           << middle << " nohead " << (i == marks_.size() ? hull_style : none_style) << '\n';
+    }
+    out_ << "$points << END\n";
+    for (std::size_t i = 0; i < marks_.size(); ++i) {
+      out_ << legend_.left(i) + 9.0 << ' ' << legend_.middle(i) << '\n';
+    }
+    out_ << "END\n";
+    plot_points("1:2 with points");
+  }
+
+  /// Plots the lines of $points, each with the look of its mark.
+  void plot_points(const std::string& how) {
+    out_ << "plot";
+    for (std::size_t i = 0; i < marks_.size(); ++i) {
+      out_ << (i == 0 ? " " : ", \\\n  ") << "$points every ::" << i << "::" << i << " using "
+           << how << " notitle pt " << marks_[i].shape << " ps 0.9 lw 1.3 lc rgb '"
+           << marks_[i].colour << "'";
+    }
+    out_ << '\n';
+  }
+
+  std::ostream& out_;
+  std::vector<Mark> marks_;
+  bool timed_ = false;
+  std::vector<Estimate> x_;
+  double none_x_ = 0.0;
+  ChartAxis x_axis_;
+  std::vector<Panel> panels_;
+  std::vector<std::string> legend_texts_;
+  Legend legend_;
+  double panel_bottom_ = 0.0, panel_height_ = 0.0;
+};
+
+}  // namespace
+
+bool has_time_axis(const BlockSummary& block) {
+  return block.machines.size() <= 1 &&
+         std::ranges::any_of(block.cells,
+                             [](const CellSummary& cell) { return cell.frame_ms.measured(); });
+}
+
+std::vector<const CellSummary*> charted_cells(const BlockSummary& block) {
+  const bool timed = has_time_axis(block);
+  std::vector<const CellSummary*> cells;
+  for (const CellSummary& cell : block.cells) {
+    if (cell.judged && (cell.frame_ms.measured() || !timed)) cells.push_back(&cell);
+  }
+  return cells;
+}
+
+std::vector<std::size_t> pareto_hull(const std::vector<double>& x, const std::vector<double>& y) {
+  std::vector<std::size_t> order(x.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return std::pair(x[i], y[i]); });
+  std::vector<std::size_t> hull;
+  for (const std::size_t i : order) {
+    if (hull.empty() || y[i] < y[hull.back()]) hull.push_back(i);
+  }
+  return hull;
+}
+
+std::string chart_script(const BlockSummary& block, const std::filesystem::path& file) {
+  std::ostringstream script;
+  script.precision(12);
+  script << "reset\nset terminal svg size " << chart_width << ',' << chart_height
+         << " noenhanced font 'Noto Sans,11' background '#FFFFFF'\nset output "
+         << quoted(file.string()) << "\nset multiplot\n";
+  ChartWriter(block, script).write();
+  script << "unset multiplot\nunset output\n";
+  return script.str();
+}
+
+}  // namespace vislab

@@ -1,0 +1,106 @@
+#include "report/finding.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/format.h"
+
+namespace vislab {
+namespace {
+
+/// The one of the two that is faster against none.
+const CellSummary* faster(const CellSummary* a, const CellSummary* b) {
+  if (a == nullptr) return b;
+  return b->against_none.value < a->against_none.value ? b : a;
+}
+
+bool is_oracle(const CellSummary& cell) { return cell.anchor && cell.canonical != "none"; }
+
+FindingKind kind_of(const Estimate& ratio, const Estimate& noise) {
+  const double least = noise.measured() ? std::min(1.0, noise.low) : 1.0;
+  const double most = noise.measured() ? std::max(1.0, noise.high) : 1.0;
+  if (ratio.high < least) return FindingKind::saves;
+  if (ratio.low > most) return FindingKind::loses;
+  return FindingKind::within_noise;
+}
+
+/// "71 %", or "2.4 times the frame" where a percentage would be unwieldy.
+std::string loss_text(double ratio) {
+  return ratio < 2.0 ? format_percent(ratio - 1.0)
+                     : std::string("(") + format_number(ratio) + " times the frame)";
+}
+
+/// Pixels that are wrong: those left out, or where none is, those whose image differs.
+std::uint64_t wrong_pixels(const CellSummary& cell) {
+  return std::max(cell.false_px, cell.drawn ? cell.image_px : 0);
+}
+
+}  // namespace
+
+bool is_free_of_errors(const CellSummary& cell) {
+  if (!cell.judged || wrong_pixels(cell) > 0) return false;
+  return cell.guarantee != Guarantee::conservative || cell.false_jittered == 0;
+}
+
+Finding find(const BlockSummary& block) {
+  Finding finding;
+  for (const CellSummary& cell : block.cells) {
+    if (cell.status != ResultCell::Status::done || !cell.against_none.measured()) continue;
+    if (is_oracle(cell)) finding.oracle = faster(finding.oracle, &cell);
+    if (cell.anchor || !cell.judged) continue;
+    if (is_free_of_errors(cell)) {
+      finding.best = faster(finding.best, &cell);
+    } else {
+      finding.erring = faster(finding.erring, &cell);
+    }
+  }
+  if (finding.best != nullptr) {
+    finding.kind = kind_of(finding.best->against_none, block.noise);
+  }
+  const double bar =
+      finding.best == nullptr ? 1.0 : std::min(1.0, finding.best->against_none.value);
+  if (finding.erring != nullptr && finding.erring->against_none.value >= bar) {
+    finding.erring = nullptr;
+  }
+  return finding;
+}
+
+Fields finding_fields(const BlockSummary& block, const std::string& scene) {
+  const Finding finding = find(block);
+  Fields fields;
+  fields.values["scene"] = scene;
+  fields.flag("saves", finding.kind == FindingKind::saves);
+  fields.flag("within_noise", finding.kind == FindingKind::within_noise);
+  fields.flag("loses", finding.kind == FindingKind::loses);
+  fields.flag("none_clean", finding.kind == FindingKind::none_clean);
+  if (finding.best != nullptr) {
+    const Estimate& ratio = finding.best->against_none;
+    fields.values["best"] = markdown_code(finding.best->culler);
+    fields.values["errors_of"] = format_of(wrong_pixels(*finding.best), finding.best->pixels);
+    fields.values["saving"] = format_percent(1.0 - ratio.value);
+    fields.values["loss"] = loss_text(ratio.value);
+    fields.values["ratio"] = format_number(ratio.value);
+    fields.values["interval"] = finding.kind == FindingKind::saves
+                                    ? format_percents(1.0 - ratio.high, 1.0 - ratio.low)
+                                    : format_number(ratio.low) + "–" + format_number(ratio.high);
+    fields.values["noise"] = block.noise.measured()
+                                 ? "±" + format_percent(std::max(std::fabs(block.noise.low - 1.0),
+                                                                 std::fabs(block.noise.high - 1.0)))
+                                 : "not measured";
+  }
+  fields.flag("oracle", finding.oracle != nullptr && finding.oracle->against_none.value < 1.0);
+  if (finding.oracle != nullptr) {
+    fields.values["oracle"] = markdown_code(finding.oracle->culler);
+    fields.values["oracle_saving"] = format_percent(1.0 - finding.oracle->against_none.value);
+  }
+  fields.flag("erring", finding.erring != nullptr);
+  if (finding.erring != nullptr) {
+    fields.values["fast"] = markdown_code(finding.erring->culler);
+    fields.values["fast_ratio"] = format_number(finding.erring->against_none.value);
+    fields.values["fast_errors_of"] =
+        format_of(wrong_pixels(*finding.erring), finding.erring->pixels);
+  }
+  return fields;
+}
+
+}  // namespace vislab

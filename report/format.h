@@ -1,0 +1,43 @@
+// Figures as the report writes them, and text made safe for Markdown.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "experiments/analysis/statistics.h"
+
+namespace vislab {
+
+/// "15,728,640".
+std::string format_count(std::uint64_t count);
+
+/// Three significant digits, thousands separated, never an exponent above 1e-4: "0.0123", "4.20",
+/// "1,230"; "–" for NaN.
+std::string format_number(double value);
+
+/// "4.20 (4.11–4.35)": the value and its interval, with the same number of decimals.
+std::string format_estimate(const Estimate& estimate);
+
+/// 0.714 as "71 %", 0.0312 as "3.1 %", 0.00042 as "0.042 %"; the gap is a narrow no-break space.
+std::string format_percent(double share);
+
+/// 0.7062 and 0.7189 as "70.6–71.9 %".
+std::string format_percents(double low, double high);
+
+/// "0 of 15,728,640".
+std::string format_of(std::uint64_t part, std::uint64_t whole);
+
+/// "512 B", "1.30 kB", "20.1 MB"; powers of 1000.
+std::string format_bytes(std::uint64_t bytes);
+
+/// A small number as "1.2 × 10^−8^" in Markdown.
+std::string format_scientific(double value);
+
+/// Text from results, so that no character of it acts as markup.
+std::string markdown_text(std::string_view text);
+
+/// A name as code: "`frustum.flat`".
+std::string markdown_code(std::string_view text);
+
+}  // namespace vislab

@@ -1,0 +1,151 @@
+#include "report/report.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+#include "common/scene/error.h"
+#include "report/chart.h"
+#include "report/method_fields.h"
+#include "report/process.h"
+#include "report/sections.h"
+
+namespace vislab {
+namespace {
+
+namespace fs = std::filesystem;
+
+const Program gnuplot{"gnuplot", "gnuplot-nox"};
+const Program pandoc{"pandoc", "pandoc"};
+const Program chromium{"chromium", "chromium"};
+constexpr std::chrono::seconds time_limit{60};
+
+/// The report's parts in their order; each is templates/NAME.md.
+constexpr const char* parts[] = {"front", "floor", "scenes", "methods", "metrics", "measurement"};
+
+/// A folder for work in progress, gone with this object.
+class WorkFolder {
+ public:
+  WorkFolder() {
+    std::string name = (fs::temp_directory_path() / "vislab-report-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) {
+      throw InputError("no temporary folder can be made in " + fs::temp_directory_path().string());
+    }
+    path_ = name;
+  }
+  ~WorkFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+std::string read_template(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError("the report's template " + file.string() + " cannot be read");
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+void write_text(const fs::path& file, const std::string& text) {
+  std::ofstream stream(file, std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream) throw InputError(file.string() + " cannot be written");
+}
+
+void draw_charts(const ReportInput& input, const fs::path& work) {
+  std::string script;
+  for (std::size_t i = 0; i < input.blocks.size(); ++i) {
+    if (charted_cells(input.blocks[i]).empty()) continue;
+    script += chart_script(input.blocks[i], chart_file_name(i));
+  }
+  if (script.empty()) return;
+  write_text(work / "charts.gnuplot", script);
+  run_program(gnuplot, {"charts.gnuplot"}, work, time_limit);
+}
+
+void write_words(const ReportInput& input, const fs::path& templates, const fs::path& work) {
+  const fs::path folder = templates / "templates";
+  Fields fields = report_fields(input, read_template(folder / "verdict.md"), work);
+  cite_sources(read_template(templates / "bibliography.bib"), fields.lists["methods"]);
+  std::string text;
+  for (const std::string part : parts) {
+    const fs::path file = folder / (part + ".md");
+    text += fill_template(read_template(file), fields, file.string()) + "\n";
+  }
+  write_text(work / "report.md", text);
+}
+
+void make_page(const fs::path& templates, const fs::path& work) {
+  const fs::path absolute = fs::absolute(templates);
+  run_program(pandoc,
+              {"report.md", "--from=markdown-implicit_header_references", "--to=html5",
+               "--metadata-file=" + (absolute / "page.yaml").string(),
+               "--template=" + (absolute / "page.html").string(),
+               "--css=" + (absolute / "style.css").string(),
+               "--bibliography=" + (absolute / "bibliography.bib").string(), "--citeproc",
+               "--mathml", "--standalone", "--self-contained", "--toc", "--toc-depth=2",
+               "--number-sections", "--section-divs",
+               // Tables keep the widths that their content asks for.
+               "--columns=10000", "--output=index.html"},
+              work, time_limit);
+}
+
+void print_page(const fs::path& work) {
+  run_program(chromium,
+              {"--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+               "--no-first-run", "--disable-extensions", "--disable-background-networking",
+               "--user-data-dir=" + (work / "browser").string(), "--no-pdf-header-footer",
+               "--print-to-pdf=" + (work / "report.pdf").string(),
+               "file://" + (work / "index.html").string()},
+              work, time_limit);
+  if (!fs::exists(work / "report.pdf")) {
+    throw InputError("chromium ended without an error but printed no report.pdf");
+  }
+}
+
+/// Copies both files beside their final names before either is renamed.
+void publish(const fs::path& work, const fs::path& folder) {
+  std::error_code code;
+  fs::create_directories(folder, code);
+  const auto unwritable = [&] {
+    return InputError("the report cannot be written to " + folder.string() + ": " + code.message() +
+                      "; name another folder with -o");
+  };
+  if (code) throw unwritable();
+  for (const char* name : {"index.html", "report.pdf"}) {
+    fs::copy_file(work / name, folder / (std::string(name) + ".tmp"),
+                  fs::copy_options::overwrite_existing, code);
+    if (code) throw unwritable();
+  }
+  for (const char* name : {"index.html", "report.pdf"}) {
+    fs::rename(folder / (std::string(name) + ".tmp"), folder / name, code);
+    if (code) throw unwritable();
+  }
+}
+
+}  // namespace
+
+void write_report(const ReportInput& input, const fs::path& template_folder,
+                  const fs::path& folder) {
+  if (input.blocks.empty()) {
+    throw InputError("there is nothing to report; measure something with 'vislab run' first");
+  }
+  const WorkFolder work;
+  draw_charts(input, work.path());
+  write_words(input, template_folder, work.path());
+  make_page(template_folder, work.path());
+  print_page(work.path());
+  publish(work.path(), folder);
+}
+
+}  // namespace vislab

@@ -1,0 +1,19 @@
+// The fields that fill the report's templates.
+#pragma once
+
+#include <filesystem>
+
+#include "report/report.h"
+#include "report/template.h"
+
+namespace vislab {
+
+/// Fields for all templates of the report. Writes the pictures of the blocks into `folder`; charts
+/// are expected there under chart_file_name(). `verdict_template` is the text of verdict.md.
+Fields report_fields(const ReportInput& input, const std::string& verdict_template,
+                     const std::filesystem::path& folder);
+
+/// Name of the chart of the block with that index: "chart-1.svg".
+std::string chart_file_name(std::size_t block);
+
+}  // namespace vislab

@@ -1,0 +1,105 @@
+#include "experiments/analysis/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace vislab {
+namespace {
+
+TEST(Statistics, MedianOfAnOddNumberIsTheMiddleSample) {
+  EXPECT_DOUBLE_EQ(median({5.0, 1.0, 3.0}), 3.0);
+}
+
+TEST(Statistics, MedianOfAnEvenNumberIsTheMeanOfTheTwoInTheMiddle) {
+  EXPECT_DOUBLE_EQ(median({8.0, 1.0, 2.0, 4.0}), 3.0);
+}
+
+TEST(Statistics, NothingHasNoMedianAndNoQuantile) {
+  EXPECT_TRUE(std::isnan(median({})));
+  EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
+}
+
+TEST(Statistics, QuantilesAreInterpolatedBetweenSamples) {
+  const std::vector<double> samples{10.0, 20.0, 30.0, 40.0, 50.0};
+  EXPECT_DOUBLE_EQ(quantile(samples, 0.0), 10.0);
+  EXPECT_DOUBLE_EQ(quantile(samples, 0.25), 20.0);
+  EXPECT_DOUBLE_EQ(quantile(samples, 0.95), 48.0);
+  EXPECT_DOUBLE_EQ(quantile(samples, 1.0), 50.0);
+  EXPECT_DOUBLE_EQ(quantile({7.0}, 0.99), 7.0);
+}
+
+TEST(Statistics, AFrameCountsWithTheMedianOfItsRounds) {
+  // Medians of the frames are 2, 20 and 5; a mean, or a median of all samples, would differ.
+  const SampleGrid rounds{{1.0, 10.0, 5.0}, {2.0, 20.0, 5.0}, {900.0, 30.0, 5.0}};
+  EXPECT_DOUBLE_EQ(median_of_frames(rounds).value, 5.0);
+  EXPECT_DOUBLE_EQ(median_of_frames({{1.0, 10.0}, {2.0, 20.0}, {900.0, 30.0}}).value, 11.0);
+}
+
+TEST(Statistics, RoundsThatAgreeGiveAnIntervalWithoutWidth) {
+  const SampleGrid rounds(5, RoundSamples{1.0, 4.0, 9.0});
+  const Estimate estimate = median_of_frames(rounds);
+  EXPECT_DOUBLE_EQ(estimate.low, 4.0);
+  EXPECT_DOUBLE_EQ(estimate.high, 4.0);
+}
+
+TEST(Statistics, TheIntervalOfOneFrameLiesWithinItsRounds) {
+  const SampleGrid rounds{{1.0}, {2.0}, {3.0}, {4.0}, {5.0}};
+  const Estimate estimate = median_of_frames(rounds);
+  EXPECT_DOUBLE_EQ(estimate.value, 3.0);
+  // All resamples have their median at a sample; 1 and 5 are medians in 1 of 17 resamples each.
+  EXPECT_DOUBLE_EQ(estimate.low, 1.0);
+  EXPECT_DOUBLE_EQ(estimate.high, 5.0);
+}
+
+TEST(Statistics, FewRoundsWidenTheIntervalByTheFrames) {
+  RoundSamples samples;
+  for (int i = 0; i < 20; ++i) samples.push_back(i);
+  const Estimate one = median_of_frames({samples});
+  EXPECT_LT(one.low, 9.5);
+  EXPECT_GT(one.high, 9.5);
+  const Estimate three = median_of_frames({samples, samples, samples});
+  EXPECT_DOUBLE_EQ(three.low, 9.5);
+  EXPECT_DOUBLE_EQ(three.high, 9.5);
+}
+
+TEST(Statistics, RatiosArePairedByRoundAndFrame) {
+  // The machine was three times slower in the second round: paired ratios do not see it.
+  const SampleGrid none{{10.0, 20.0}, {30.0, 60.0}};
+  const SampleGrid cell{{5.0, 10.0}, {15.0, 30.0}};
+  const Estimate estimate = paired_ratio(cell, none);
+  EXPECT_DOUBLE_EQ(estimate.value, 0.5);
+  EXPECT_DOUBLE_EQ(estimate.low, 0.5);
+  EXPECT_DOUBLE_EQ(estimate.high, 0.5);
+}
+
+TEST(Statistics, TheRatioIsTheMedianOfAllPairs) {
+  const Estimate estimate = paired_ratio({{1.0, 2.0, 6.0}}, {{2.0, 2.0, 2.0}});
+  EXPECT_DOUBLE_EQ(estimate.value, 1.0);
+  EXPECT_LE(estimate.low, estimate.value);
+  EXPECT_GE(estimate.high, estimate.value);
+}
+
+TEST(Statistics, PairsWithoutAPositiveDenominatorDoNotCount) {
+  EXPECT_DOUBLE_EQ(paired_ratio({{4.0, 6.0}}, {{0.0, 2.0}}).value, 3.0);
+  EXPECT_FALSE(paired_ratio({{4.0}}, {{0.0}}).measured());
+}
+
+TEST(Statistics, NothingMeasuredGivesNoEstimate) {
+  EXPECT_FALSE(median_of_frames({}).measured());
+  EXPECT_FALSE(median_of_frames({{}, {}}).measured());
+  EXPECT_FALSE(paired_ratio({}, {}).measured());
+}
+
+TEST(Statistics, TheSameSamplesGiveTheSameInterval) {
+  SampleGrid rounds;
+  for (int r = 0; r < 7; ++r) rounds.push_back({1.0 + r, 2.0 + 3.0 * r, 4.0 - 0.1 * r});
+  const Estimate first = median_of_frames(rounds);
+  const Estimate second = median_of_frames(rounds);
+  EXPECT_EQ(first.low, second.low);
+  EXPECT_EQ(first.high, second.high);
+  EXPECT_LT(first.low, first.high);
+}
+
+}  // namespace
+}  // namespace vislab

@@ -1,0 +1,246 @@
+#include "experiments/analysis/summary.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+
+namespace vislab {
+namespace {
+
+constexpr const char* frustum = "frustum.flat[test=box]";
+
+/// A cell of two frames; `times` are the frame times of its rounds, numbered from 0.
+JudgedCell make_cell(const std::string& chain, const SampleGrid& times, int replicate = 0) {
+  JudgedCell judged;
+  ResultCell& cell = judged.cell;
+  cell.key.chain = chain;
+  cell.key.scene_hash = "scene";
+  cell.key.path_hash = "path";
+  cell.key.replicate = replicate;
+  cell.culler = chain;
+  cell.scene = "made_up";
+  cell.path = "orbit";
+  cell.scene_objects = 10;
+  cell.scene_triangles = 1000;
+  cell.status = ResultCell::Status::done;
+  cell.context["machine"] = "one";
+  cell.frames = {{"a", "t", 100, {{"plane_tests", 6}}}, {"b", "t", 300, {{"plane_tests", 10}}}};
+  for (std::size_t r = 0; r < times.size(); ++r) {
+    Round round;
+    round.session = "s";
+    round.number = static_cast<int>(r);
+    round.frame_ms = times[r];
+    round.update_us.assign(times[r].size(), 1000.0);
+    round.cull_us.assign(times[r].size(), 2000.0);
+    round.draw_ms.assign(times[r].size(), 4.0);
+    cell.rounds.push_back(round);
+  }
+  return judged;
+}
+
+void add_anchor(JudgedCell& judged, const std::string& chain, const SampleGrid& times,
+                const std::string& session = "s") {
+  for (std::size_t r = 0; r < times.size(); ++r) {
+    judged.cell.anchors[chain].push_back({session, static_cast<int>(r), times[r]});
+  }
+}
+
+Verdict make_verdict() {
+  Verdict v;
+  v.pixels = 1000;
+  v.visible_triangles = 100;
+  v.visible_objects = 4;
+  v.scene_triangles = 1000;
+  v.scene_objects = 10;
+  v.submitted_triangles = 340;
+  v.kept_objects = 5;
+  v.over_triangles_count = 250;
+  v.over_objects_count = 2;
+  v.under_triangles_count = 10;
+  return v;
+}
+
+CellSummary only_cell(const JudgedCell& judged) {
+  const std::vector<BlockSummary> blocks = summarise(std::vector<JudgedCell>{judged});
+  EXPECT_EQ(blocks.size(), 1U);
+  EXPECT_EQ(blocks.front().cells.size(), 1U);
+  return blocks.front().cells.front();
+}
+
+TEST(Summary, RatiosPairRoundsOfTheSameSessionAndNumber) {
+  JudgedCell judged = make_cell(frustum, {{2.0, 4.0}, {6.0, 12.0}});
+  add_anchor(judged, "none", {{4.0, 8.0}, {12.0, 24.0}});
+  const CellSummary cell = only_cell(judged);
+  EXPECT_DOUBLE_EQ(cell.against_none.value, 0.5);
+  EXPECT_DOUBLE_EQ(cell.against_none.low, 0.5);
+  EXPECT_DOUBLE_EQ(cell.against_none.high, 0.5);
+  EXPECT_DOUBLE_EQ(cell.frame_ms.median.value, 6.0);  // medians of the frames: 4 and 8
+  EXPECT_DOUBLE_EQ(cell.frame_ms.worst, 12.0);
+}
+
+TEST(Summary, RoundsOfAnotherSessionAreNotPaired) {
+  JudgedCell judged = make_cell(frustum, {{2.0, 4.0}});
+  add_anchor(judged, "none", {{4.0, 8.0}}, "another");
+  EXPECT_FALSE(only_cell(judged).against_none.measured());
+}
+
+TEST(Summary, WithoutAnchorsThereAreTimesButNoRatios) {
+  const CellSummary cell = only_cell(make_cell(frustum, {{2.0, 4.0}}));
+  EXPECT_TRUE(cell.frame_ms.measured());
+  EXPECT_FALSE(cell.against_none.measured());
+  EXPECT_FALSE(cell.efficiency.measured());
+  EXPECT_TRUE(std::isnan(cell.modelled_frame_ms));
+}
+
+TEST(Summary, EfficiencyComparesWithTheOracleOfTheSameLevel) {
+  JudgedCell judged = make_cell(frustum, {{4.0, 4.0}});
+  add_anchor(judged, "oracle[level=object]", {{1.0, 1.0}});
+  add_anchor(judged, "oracle[level=triangle]", {{0.5, 0.5}});
+  judged.cell.granularity = Granularity::object;
+  EXPECT_DOUBLE_EQ(only_cell(judged).efficiency.value, 0.25);
+  judged.cell.granularity = Granularity::triangle;
+  EXPECT_DOUBLE_EQ(only_cell(judged).efficiency.value, 0.125);
+}
+
+TEST(Summary, AnAnchorPairsWithItself) {
+  const CellSummary none = only_cell(make_cell("none", {{3.0, 5.0}}));
+  EXPECT_TRUE(none.anchor);
+  EXPECT_DOUBLE_EQ(none.against_none.value, 1.0);
+}
+
+TEST(Summary, ZeroRoundsGiveNoTimes) {
+  const CellSummary cell = only_cell(make_cell(frustum, {}));
+  EXPECT_EQ(cell.rounds, 0);
+  EXPECT_FALSE(cell.frame_ms.measured());
+  EXPECT_TRUE(std::isnan(cell.frame_ms.p95));
+  EXPECT_TRUE(std::isnan(cell.frame_ms.worst));
+  EXPECT_DOUBLE_EQ(cell.submitted_triangles, 200.0);
+}
+
+TEST(Summary, FailedCellsStayWithTheirReason) {
+  JudgedCell judged = make_cell(frustum, {});
+  judged.cell.frames.clear();
+  judged.cell.status = ResultCell::Status::failed;
+  judged.cell.reason = "out of memory";
+  const CellSummary cell = only_cell(judged);
+  EXPECT_EQ(cell.status, ResultCell::Status::failed);
+  EXPECT_EQ(cell.reason, "out of memory");
+  EXPECT_TRUE(std::isnan(cell.submitted_triangles));
+}
+
+TEST(Summary, AccuracyAddsUpOverTheFrames) {
+  JudgedCell judged = make_cell(frustum, {});
+  Verdict second = make_verdict();
+  second.false_px = 7;
+  second.max_false_px = 5;
+  second.false_objects = 1;
+  second.jittered = 16000;
+  CellVerdicts verdicts;
+  verdicts.frames = {make_verdict(), second};
+  verdicts.images = {{0, 1}, {9, 2}};
+  judged.verdicts = verdicts;
+  const CellSummary cell = only_cell(judged);
+  EXPECT_TRUE(cell.judged);
+  EXPECT_TRUE(cell.drawn);
+  EXPECT_EQ(cell.pixels, 2000U);
+  EXPECT_EQ(cell.false_px, 7U);
+  EXPECT_EQ(cell.max_false_px, 5U);
+  EXPECT_EQ(cell.image_px, 9U);
+  EXPECT_EQ(cell.disputed_image_px, 3U);
+  EXPECT_DOUBLE_EQ(cell.over, 2.5);
+  EXPECT_DOUBLE_EQ(cell.over_objects, 0.5);
+  EXPECT_DOUBLE_EQ(cell.under, 0.1);
+  EXPECT_DOUBLE_EQ(cell.recall, 650.0 / 900.0);
+  EXPECT_DOUBLE_EQ(cell.kept_objects, 5.0);
+  EXPECT_DOUBLE_EQ(cell.counters.at("plane_tests"), 8.0);
+  EXPECT_DOUBLE_EQ(cell.metric("false_px"), 7.0);
+  EXPECT_TRUE(std::isnan(cell.metric("flicker")));
+}
+
+TEST(Summary, WithoutVerdictsNothingIsJudged) {
+  const CellSummary cell = only_cell(make_cell(frustum, {{1.0, 1.0}}));
+  EXPECT_FALSE(cell.judged);
+  EXPECT_TRUE(std::isnan(cell.over));
+  EXPECT_TRUE(std::isnan(cell.metric("false_px")));
+}
+
+TEST(Summary, TheModelledFrameAddsTestsAndTrianglesAtTheCostOfDrawingEverything) {
+  JudgedCell none = make_cell("none", {{5.0, 5.0}});
+  none.cell.frames[0].submitted_triangles = none.cell.frames[1].submitted_triangles = 1000;
+  const std::vector<BlockSummary> blocks = summarise({none, make_cell(frustum, {{3.0, 3.0}})});
+  const CellSummary& cell = blocks.front().cells.back();
+  EXPECT_EQ(cell.canonical, frustum);
+  // 3 ms of tests, and 200 of the 1000 triangles that none draws in 4 ms.
+  EXPECT_DOUBLE_EQ(cell.modelled_frame_ms, 3.8);
+}
+
+TEST(Summary, TheControlGivesTheNoise) {
+  JudgedCell control = make_cell("none", {{5.5, 5.5}}, 1);
+  add_anchor(control, "none", {{5.0, 5.0}});
+  const std::vector<BlockSummary> blocks = summarise({control, make_cell("none", {{5.0, 5.0}})});
+  ASSERT_EQ(blocks.front().cells.size(), 2U);
+  EXPECT_DOUBLE_EQ(blocks.front().noise.value, 1.1);
+  EXPECT_EQ(blocks.front().cells[0].culler, "none");
+  EXPECT_EQ(blocks.front().cells[1].culler, "none (again)");
+  EXPECT_TRUE(blocks.front().cells[1].anchor);
+}
+
+TEST(Summary, AnchorsComeFirstAndTheRestByName) {
+  const std::vector<BlockSummary> blocks =
+      summarise({make_cell(frustum, {}), make_cell("backface.polygon", {}),
+                 make_cell("oracle[level=triangle]", {}), make_cell("oracle[level=object]", {}),
+                 make_cell("none", {}, 1), make_cell("none", {})});
+  std::vector<std::string> names;
+  for (const CellSummary& cell : blocks.front().cells) names.push_back(cell.culler);
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"none", "none (again)", "oracle[level=object]",
+                                      "oracle[level=triangle]", "backface.polygon", frustum}));
+}
+
+TEST(Summary, CellsOfOtherResolutionsAreOtherBlocks) {
+  JudgedCell large = make_cell(frustum, {});
+  large.cell.key.viewport = {1024, 1024};
+  EXPECT_EQ(summarise({make_cell(frustum, {}), large}).size(), 2U);
+}
+
+TEST(Summary, EveryMachineOfABlockIsNamed) {
+  JudgedCell other = make_cell("backface.polygon", {});
+  other.cell.context["machine"] = "another";
+  const std::vector<BlockSummary> blocks = summarise({make_cell(frustum, {}), other});
+  EXPECT_EQ(blocks.front().machines, (std::vector<std::string>{"another", "one"}));
+}
+
+TEST(Summary, TheErrorFloorIsThatOfTheFramesNotOfEachCell) {
+  CellVerdicts verdicts;
+  verdicts.frames = {make_verdict(), make_verdict()};
+  verdicts.images = {{}, {}};
+  verdicts.floor_disputed_px = 12;
+  JudgedCell first = make_cell("none", {});
+  JudgedCell second = make_cell(frustum, {});
+  first.verdicts = second.verdicts = verdicts;
+  const std::vector<BlockSummary> blocks = summarise({first, second});
+  EXPECT_EQ(blocks.front().floor_pixels, 2000U);
+  EXPECT_EQ(blocks.front().floor_disputed_px, 12U);
+}
+
+TEST(Summary, NoCellsGiveNoBlocks) { EXPECT_TRUE(summarise(std::vector<JudgedCell>{}).empty()); }
+
+TEST(Summary, VerdictsOfAnotherJudgeDoNotCount) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() /
+                                       ("vislab-summary-test-" + std::to_string(::getpid()));
+  const ResultStore store = ResultStore::create(folder);
+  const JudgedCell judged = make_cell(frustum, {{1.0, 2.0}});
+  CellVerdicts verdicts;
+  verdicts.judge = "present";
+  verdicts.frames = {make_verdict(), make_verdict()};
+  store.save_cell(judged.cell);
+  store.save_verdicts(judged.cell.key.id(), verdicts);
+  EXPECT_TRUE(summarise(store, "present").front().cells.front().judged);
+  EXPECT_FALSE(summarise(store, "mended").front().cells.front().judged);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace vislab

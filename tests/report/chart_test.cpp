@@ -1,0 +1,91 @@
+#include "report/chart.h"
+
+#include <gtest/gtest.h>
+
+#include "report/chart_axis.h"
+#include "report/chart_labels.h"
+#include "tests/report/fabricated.h"
+
+namespace vislab {
+namespace {
+
+TEST(Chart, TheParetoHullHoldsWhatNothingBeats) {
+  //  y            0: beaten by 1 in both, 1, 2 and 4: on the hull, 3: beaten by 2
+  const std::vector<double> x{3.0, 1.0, 2.0, 4.0, 5.0};
+  const std::vector<double> y{9.0, 8.0, 4.0, 4.0, 0.0};
+  EXPECT_EQ(pareto_hull(x, y), (std::vector<std::size_t>{1, 2, 4}));
+}
+
+TEST(Chart, EqualPointsStandOnTheHullOnce) {
+  EXPECT_EQ(pareto_hull({1.0, 1.0}, {0.0, 0.0}).size(), 1U);
+  EXPECT_TRUE(pareto_hull({}, {}).empty());
+}
+
+TEST(Chart, ZeroHasItsPlaceBelowTheLowestDecade) {
+  const ChartAxis axis = logarithmic_axis({0.0, 3.0, 25000.0}, 10.0, "0 of 100,000");
+  EXPECT_LT(axis.position(0.0), 1.0);
+  EXPECT_GT(axis.share(0.0), 0.0);
+  EXPECT_LT(axis.share(0.0), axis.share(1.0));
+  EXPECT_LT(axis.share(25000.0), 1.0);
+  EXPECT_EQ(axis.ticks.front().second, "0 of 100,000");
+  EXPECT_DOUBLE_EQ(axis.ticks.front().first, axis.position(0.0));
+}
+
+TEST(Chart, AnAxisOfZeroesAloneStillShowsTheScale) {
+  const ChartAxis axis = logarithmic_axis({0.0, 0.0}, 10.0, "0 of 5");
+  EXPECT_EQ(axis.ticks.back().second, "10");
+}
+
+TEST(Chart, TimesNearEachOtherStartAtZero) {
+  const ChartAxis near = positive_axis({2.0, 8.0});
+  EXPECT_FALSE(near.logarithmic);
+  EXPECT_DOUBLE_EQ(near.low, 0.0);
+  EXPECT_GT(near.high, 8.0);
+  const ChartAxis far = positive_axis({0.1, 8.0});
+  EXPECT_TRUE(far.logarithmic);
+  EXPECT_LT(far.low, 0.1);
+}
+
+TEST(Chart, LabelsOfPointsInOnePlaceDoNotOverlap) {
+  const std::vector<LabelRequest> requests(6, LabelRequest{50.0, 50.0, 12.0, 10.0});
+  const ChartBox mark{45.0, 45.0, 55.0, 55.0};
+  const std::vector<PlacedLabel> labels = place_labels(requests, {mark}, {0.0, 0.0, 100.0, 100.0});
+  std::vector<ChartBox> boxes{mark};
+  for (const PlacedLabel& label : labels) {
+    const ChartBox box{label.x - 6.0, label.y - 5.0, label.x + 6.0, label.y + 5.0};
+    for (const ChartBox& other : boxes) EXPECT_DOUBLE_EQ(box.overlap(other), 0.0);
+    boxes.push_back(box);
+  }
+}
+
+TEST(Chart, LabelsStayInsideTheFrame) {
+  const std::vector<PlacedLabel> labels =
+      place_labels({{1.0, 99.0, 12.0, 10.0}}, {}, {0.0, 0.0, 100.0, 100.0});
+  EXPECT_GE(labels.front().x, 6.0);
+  EXPECT_LE(labels.front().y, 95.0);
+}
+
+TEST(Chart, TimesOfSeveralMachinesHaveNoAxis) {
+  BlockSummary block = fabricated_block("made_up");
+  EXPECT_TRUE(has_time_axis(block));
+  EXPECT_NE(chart_script(block, "x.svg").find("frame_ms"), std::string::npos);
+  block.machines = {"one", "two"};
+  EXPECT_FALSE(has_time_axis(block));
+  EXPECT_EQ(chart_script(block, "x.svg").find("frame_ms"), std::string::npos);
+  EXPECT_NE(chart_script(block, "x.svg").find("triangles submitted"), std::string::npos);
+}
+
+TEST(Chart, OnlyJudgedAndTimedCellsHaveAPoint) {
+  BlockSummary block = fabricated_block("made_up");
+  block.cells[2].judged = false;
+  block.cells[3].frame_ms.median = Estimate::none();
+  EXPECT_EQ(charted_cells(block).size(), 2U);
+}
+
+TEST(Chart, ScriptsSayHowManyPixelsZeroIsOf) {
+  EXPECT_NE(chart_script(fabricated_block("made_up"), "x.svg").find("0 of\\n15,728,640"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace vislab

@@ -1,0 +1,72 @@
+#include "report/finding.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/report/fabricated.h"
+
+namespace vislab {
+namespace {
+
+TEST(Finding, TheFastestMethodWithoutErrorsIsTheBest) {
+  BlockSummary block = fabricated_block("made_up");
+  block.cells.push_back(fabricated_cell("slow", 0.8, 0, 3.0));
+  block.cells.push_back(fabricated_cell("good", 0.3, 0, 3.0));
+  block.cells.push_back(fabricated_cell("wrong", 0.1, 1, 0.0));
+  const Finding finding = find(block);
+  EXPECT_EQ(finding.kind, FindingKind::saves);
+  ASSERT_NE(finding.best, nullptr);
+  EXPECT_EQ(finding.best->culler, "good");
+  ASSERT_NE(finding.erring, nullptr);
+  EXPECT_EQ(finding.erring->culler, "wrong");
+  EXPECT_EQ(finding.oracle->culler, "oracle[level=triangle]");
+}
+
+TEST(Finding, ASlowMethodWithErrorsIsNotMentioned) {
+  BlockSummary block = fabricated_block("made_up");
+  block.cells.push_back(fabricated_cell("good", 0.3, 0, 3.0));
+  block.cells.push_back(fabricated_cell("wrong", 0.4, 1, 0.0));
+  EXPECT_EQ(find(block).erring, nullptr);
+}
+
+TEST(Finding, ASavingWithinTheNoiseIsNone) {
+  BlockSummary block = fabricated_block("made_up");
+  block.cells.push_back(fabricated_cell("same", 0.96, 0, 3.0));  // 0.941 to 0.979
+  EXPECT_EQ(find(block).kind, FindingKind::saves);
+  block.noise = {1.0, 0.97, 1.03};
+  EXPECT_EQ(find(block).kind, FindingKind::within_noise);
+}
+
+TEST(Finding, ALossIsSaidToBeOne) {
+  BlockSummary block = fabricated_block("made_up");
+  block.cells.push_back(fabricated_cell("slow", 1.2, 0, 3.0));
+  EXPECT_EQ(find(block).kind, FindingKind::loses);
+}
+
+TEST(Finding, ImagesThatDifferAreErrors) {
+  CellSummary cell = fabricated_cell("same", 0.5, 0, 3.0);
+  EXPECT_TRUE(is_free_of_errors(cell));
+  cell.image_px = 1;
+  EXPECT_FALSE(is_free_of_errors(cell));
+}
+
+TEST(Finding, OnlyConservativeMethodsMustKeepWhatLiesBetweenThePixels) {
+  CellSummary cell = fabricated_cell("same", 0.5, 0, 3.0);
+  cell.false_jittered = 1;
+  EXPECT_FALSE(is_free_of_errors(cell));
+  cell.guarantee = Guarantee::image_exact;
+  EXPECT_TRUE(is_free_of_errors(cell));
+}
+
+TEST(Finding, FailedUntimedAndUnjudgedCellsAreNoMethodsToRecommend) {
+  BlockSummary block = fabricated_block("made_up");
+  for (int i = 0; i < 3; ++i) block.cells.push_back(fabricated_cell("x", 0.3, 0, 3.0));
+  block.cells[4].status = ResultCell::Status::failed;
+  block.cells[5].against_none = Estimate::none();
+  block.cells[6].judged = false;
+  const Finding finding = find(block);
+  EXPECT_EQ(finding.kind, FindingKind::none_clean);
+  EXPECT_EQ(finding.best, nullptr);
+}
+
+}  // namespace
+}  // namespace vislab

@@ -1,0 +1,236 @@
+#include "report/report.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <vector>
+
+#include "common/scene/error.h"
+#include "report/method_fields.h"
+#include "report/process.h"
+#include "tests/report/fabricated.h"
+
+namespace vislab {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path templates = fs::path(VISLAB_SOURCE_DIR) / "report";
+
+std::string read(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+class Report : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() /
+              ("vislab-report-test-" + std::string(test->name()) + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path folder_;
+};
+
+ReportInput fabricated_input() {
+  ReportInput input;
+  BlockSummary block = fabricated_block("made_up_scene");
+  block.cells.push_back(fabricated_cell("frustum.flat", 0.29, 0, 4.3));
+  block.cells.push_back(fabricated_cell("bold.guess", 0.2, 25'123, 0.4));
+  CellSummary failed;
+  failed.culler = failed.canonical = "occlusion.slow";
+  failed.status = ResultCell::Status::failed;
+  failed.reason = "timed out after 300 s";
+  failed.frame_ms.median = failed.against_none = Estimate::none();
+  block.cells.push_back(failed);
+  input.blocks.push_back(block);
+  return input;
+}
+
+void replace_all(std::string& text, const std::string& from, const std::string& to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
+    text.replace(at, from.size(), to);
+  }
+}
+
+/// The page as a reader sees it: without markup, and all gaps are single spaces.
+std::string words_of(const std::string& html) {
+  std::string text;
+  bool in_tag = false;
+  for (const char c : html) {
+    if (c == '<') in_tag = true;
+    if (!in_tag) text += c == '\n' ? ' ' : c;
+    if (c == '>') in_tag = false;
+  }
+  for (const char* gap : {"\u202F", "\u00A0", "&nbsp;"}) replace_all(text, gap, " ");
+  while (text.find("  ") != std::string::npos) replace_all(text, "  ", " ");
+  return text;
+}
+
+/// What follows `opening` up to 40 characters, wherever it does not start with "data:" or "#".
+std::vector<std::string> outside_references(const std::string& html, const std::string& opening) {
+  std::vector<std::string> found;
+  for (std::size_t at = 0; (at = html.find(opening, at)) != std::string::npos;) {
+    at += opening.size();
+    const std::string target = html.substr(at, 40);
+    if (!target.starts_with("data:") && !target.starts_with('#')) found.push_back(target);
+  }
+  return found;
+}
+
+TEST_F(Report, BothFilesAreWrittenAndSayWhatTheInputSays) {
+  write_report(fabricated_input(), templates, folder_ / "out");
+  const std::string html = read(folder_ / "out" / "index.html");
+  const std::string words = words_of(html);
+  EXPECT_NE(words.find("On made_up_scene, frustum.flat saves 71 % of the frame at 0 errors "
+                       "(0 of 15,728,640 pixels"),
+            std::string::npos);
+  EXPECT_NE(words.find("bold.guess takes only 0.200 times as long as drawing everything, but is "
+                       "wrong in 25,123 of 15,728,640 pixels"),
+            std::string::npos);
+  EXPECT_NE(words.find("occlusion.slow failed: timed out after 300 s"), std::string::npos);
+  EXPECT_NE(words.find("1,234"), std::string::npos);  // the error floor
+  EXPECT_LT(html.find("id=\"the-error-floor\""), html.find("id=\"the-scenes\""));
+  EXPECT_TRUE(read(folder_ / "out" / "report.pdf").starts_with("%PDF-"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out"), {}), 2);
+}
+
+TEST_F(Report, ThePageRefersToNothingOutside) {
+  write_report(fabricated_input(), templates, folder_);
+  const std::string html = read(folder_ / "index.html");
+  for (const char* opening : {" src=\"", " href=\"", " poster=\"", " data=\"", "url(", "@import"}) {
+    EXPECT_EQ(outside_references(html, opening), std::vector<std::string>{}) << opening;
+  }
+  EXPECT_NE(html.find("data:image/svg+xml"), std::string::npos);
+}
+
+TEST_F(Report, PicturesStandInThePageWithTheirCaptions) {
+  ReportInput input = fabricated_input();
+  std::vector<std::string> asked;
+  input.picture = [&](const BlockSummary&, const CellSummary& cell, const fs::path& file) {
+    asked.push_back(cell.culler);
+    if (cell.culler == "bold.guess") throw InputError("the scene is gone");
+    std::ofstream(file) << "not quite a PNG";
+    return std::string("Frame 17 as seen");
+  };
+  write_report(input, templates, folder_);
+  const std::string html = read(folder_ / "index.html");
+  EXPECT_EQ(asked, (std::vector<std::string>{"frustum.flat", "bold.guess"}));
+  EXPECT_NE(html.find("Frame 17 as seen"), std::string::npos);
+  EXPECT_NE(html.find("data:image/png"), std::string::npos);
+  EXPECT_NE(words_of(html).find("There is no picture of bold.guess: the scene is gone"),
+            std::string::npos);
+}
+
+TEST_F(Report, MethodsStandWithTheirDeclarationAndCitations) {
+  Registry registry;
+  CullerEntry entry;
+  entry.info.name = "frustum.flat";
+  entry.info.summary = "Leaves out *boxes*.";
+  entry.info.cost = "six planes";
+  entry.info.limits = "none known";
+  entry.info.sources = {"Clark 1976, about models", "Nobody 1976"};
+  entry.info.parameters = {ParameterSpec::choice("test", "box", {"box", "sphere"},
+                                                 ParameterSpec::Stage::build, "the volume")};
+  registry.add(entry);
+  ReportInput input = fabricated_input();
+  input.cullers = &registry;
+  std::vector<Fields> methods = method_fields(input);
+  ASSERT_EQ(methods.size(), 1U);
+  cite_sources("@article{clark1976,\n title = {x}\n}", methods);
+  EXPECT_EQ(methods[0].lists["sources"][0].values["source"],
+            "Clark 1976\\, about models [@clark1976]");
+  EXPECT_EQ(methods[0].lists["sources"][1].values["source"], "Nobody 1976");
+  EXPECT_EQ(methods[0].values["summary"], "Leaves out \\*boxes\\*\\.");
+  EXPECT_EQ(methods[0].lists["parameters"].size(), 1U);
+}
+
+TEST_F(Report, TimesOfSeveralMachinesAreNotComparedAndThatIsSaid) {
+  ReportInput input = fabricated_input();
+  input.blocks[0].machines = {"one", "two"};
+  write_report(input, templates, folder_);
+  EXPECT_NE(words_of(read(folder_ / "index.html")).find("were measured on 2 machines"),
+            std::string::npos);
+}
+
+TEST_F(Report, NothingToReportIsAnInputError) {
+  EXPECT_THROW(write_report({}, templates, folder_ / "out"), InputError);
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+/// Sets PATH for as long as it lives.
+class PathOnly {
+ public:
+  explicit PathOnly(const fs::path& folder) : before_(std::getenv("PATH")) {
+    ::setenv("PATH", folder.c_str(), 1);
+  }
+  ~PathOnly() { ::setenv("PATH", before_.c_str(), 1); }
+  PathOnly(const PathOnly&) = delete;
+  PathOnly& operator=(const PathOnly&) = delete;
+
+ private:
+  std::string before_;
+};
+
+std::string message_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST_F(Report, AMissingProgramIsNamedWithItsPackageAndNothingIsWritten) {
+  const PathOnly empty(folder_);
+  const std::string message =
+      message_of([&] { write_report(fabricated_input(), templates, folder_ / "out"); });
+  EXPECT_NE(message.find("gnuplot"), std::string::npos) << message;
+  EXPECT_NE(message.find("gnuplot-nox"), std::string::npos) << message;
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+void write_program(const fs::path& file, const std::string& body) {
+  std::ofstream(file) << "#!/bin/sh\n" << body << '\n';
+  fs::permissions(file, fs::perms::owner_all);
+}
+
+TEST_F(Report, AProgramThatFailsLeavesTheOldReportAsItWas) {
+  const fs::path out = folder_ / "out";
+  fs::create_directories(out);
+  std::ofstream(out / "index.html") << "old";
+  for (const char* name : {"gnuplot", "pandoc"}) write_program(folder_ / name, "exit 0");
+  write_program(folder_ / "chromium", "echo 'no display'; exit 3");
+  const PathOnly programs(folder_);
+  const std::string message = message_of([&] { write_report(fabricated_input(), templates, out); });
+  EXPECT_NE(message.find("chromium failed while writing the report: no display"), std::string::npos)
+      << message;
+  EXPECT_EQ(read(out / "index.html"), "old");
+  EXPECT_FALSE(fs::exists(out / "report.pdf"));
+}
+
+TEST_F(Report, AProgramThatHangsIsEnded) {
+  write_program(folder_ / "sleeper", "/bin/sleep 100");
+  const PathOnly programs(folder_);
+  const std::string message = message_of([&] {
+    run_program({"sleeper", "none"}, {}, folder_, std::chrono::seconds(1));
+  });
+  EXPECT_NE(message.find("did not end within 1 s"), std::string::npos) << message;
+}
+
+TEST_F(Report, AFolderThatCannotBeMadeIsAnInputError) {
+  std::ofstream(folder_ / "file") << "in the way";
+  const std::string message =
+      message_of([&] { write_report(fabricated_input(), templates, folder_ / "file" / "out"); });
+  EXPECT_NE(message.find("cannot be written"), std::string::npos) << message;
+}
+
+}  // namespace
+}  // namespace vislab
