@@ -18,6 +18,10 @@ endif()
 # Contraction of a*b+c into one rounding changes ids between builds: results must not depend on it.
 add_library(vislab_options INTERFACE)
 target_compile_options(vislab_options INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # GCC 12 warns of overlapping copies in plain string concatenation (GCC bug 105651).
+  target_compile_options(vislab_options INTERFACE -Wno-restrict)
+endif()
 if(VISLAB_WARNINGS_AS_ERRORS)
   target_compile_options(vislab_options INTERFACE -Werror)
 endif()

@@ -48,7 +48,7 @@ void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene
       const VisibleSet& set = sets.at(hash);
       const std::pair key(hash, granularity);
       if (!verdicts.contains(key)) {
-        verdicts.emplace(key, judge_set(frame, scene, seen, set, granularity, caster));
+        verdicts.emplace(key, judge_set(frame, seen, set, granularity, caster));
       }
       entry.verdicts.frames.push_back(verdicts.at(key));
       if (image) {

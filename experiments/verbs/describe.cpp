@@ -25,13 +25,7 @@ class Facts {
       return;
     }
     for (std::size_t i = 0; i < keys_.size(); ++i) {
-      Table line({keys_[i] + ":"});
-      line.add({values_[i]});
-      if (const auto* text = std::get_if<std::string>(&values_[i])) {
-        out << keys_[i] << ": " << *text << '\n';
-      } else {
-        line.print_text(out);
-      }
+      out << keys_[i] << ": " << to_text(values_[i]) << '\n';
     }
   }
 

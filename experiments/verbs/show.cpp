@@ -48,8 +48,7 @@ int show(const Lab& lab, const ShowCall& call) {
   frame.viewport = viewport;
   frame.objects = state.view();
   const Granularity granularity = culler->info().granularity;
-  const Verdict verdict =
-      judge_set(frame, scene, truth.frame(last), run.sets[last], granularity, caster);
+  const Verdict verdict = judge_set(frame, truth.frame(last), run.sets[last], granularity, caster);
   write_frame_picture(
       scene, frame, truth.frame(last), run.sets[last], verdict, granularity,
       scene.name + ", " + lab.cullers.short_name(call.culler) + ", frame " + std::to_string(last),

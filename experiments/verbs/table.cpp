@@ -27,14 +27,6 @@ std::string short_number(double value) {
   return text;
 }
 
-std::string to_text(const TableValue& value) {
-  if (const auto* text = std::get_if<std::string>(&value)) return *text;
-  if (const auto* number = std::get_if<double>(&value)) return short_number(*number);
-  if (const auto* count = std::get_if<std::uint64_t>(&value)) return std::to_string(*count);
-  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "yes" : "no";
-  return "-";
-}
-
 nlohmann::ordered_json to_json(const TableValue& value) {
   if (const auto* text = std::get_if<std::string>(&value)) return *text;
   if (const auto* number = std::get_if<double>(&value)) {
@@ -63,6 +55,14 @@ std::size_t width_of(const std::string& text) {
 }
 
 }  // namespace
+
+std::string to_text(const TableValue& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  if (const auto* number = std::get_if<double>(&value)) return short_number(*number);
+  if (const auto* count = std::get_if<std::uint64_t>(&value)) return std::to_string(*count);
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "yes" : "no";
+  return "-";
+}
 
 void Table::add(std::vector<TableValue> row) {
   if (row.size() != columns_.size()) throw std::logic_error("a row does not fit its table");

@@ -12,6 +12,9 @@ namespace vislab {
 /// A value of a table; std::monostate (and NaN) means that it does not apply.
 using TableValue = std::variant<std::monostate, std::string, double, std::uint64_t, bool>;
 
+/// The value as tables show it: numbers with four significant digits, "-" for what does not apply.
+std::string to_text(const TableValue& value);
+
 class Table {
  public:
   /// Column names are the keys of the JSON objects; metrics go by their own names.

@@ -54,8 +54,7 @@ int show(const Lab& lab, const ShowCall& call);
 int compare(const Lab& lab, const std::string& a, const std::string& b,
             const std::filesystem::path& results, bool json);
 /// All cells with all metrics; `format` is csv or json.
-int export_results(const Lab& lab, const std::string& format,
-                   const std::filesystem::path& results);
+int export_results(const Lab& lab, const std::string& format, const std::filesystem::path& results);
 int report(const Lab& lab, const std::filesystem::path& results,
            const std::filesystem::path& output);
 int check(const Lab& lab, const std::string& culler, bool json);

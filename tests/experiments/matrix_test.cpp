@@ -1,0 +1,145 @@
+#include "experiments/matrix/matrix.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "algorithms/all_cullers.h"
+#include "common/scene/error.h"
+#include "tests/experiments/temporary_folder.h"
+
+namespace vislab {
+namespace {
+
+class MatrixFile : public ::testing::Test {
+ protected:
+  MatrixFile() { register_all_cullers(registry_); }
+  Matrix load(const std::string& text) {
+    return load_matrix(folder_.write("test.toml", text), folder_.path(), registry_);
+  }
+  std::string refusal(const std::string& text) {
+    try {
+      load(text);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  Registry registry_;
+  TemporaryFolder folder_;
+};
+
+std::size_t count_of(const Block& block, const std::string& chain) {
+  return static_cast<std::size_t>(std::ranges::count(block.cullers, chain, &BlockCuller::chain));
+}
+
+TEST_F(MatrixFile, ListsMultiply) {
+  const Matrix matrix = load(
+      "[lists]\nculler = [\"frustum.flat\", \"backface.polygon\"]\nscene = [\"a\", \"b\"]\n"
+      "resolution = [\"64x32\", \"128x128\", \"5x7\"]\nframes = [3, 4]\n");
+  ASSERT_EQ(matrix.blocks.size(), 2U * 3U * 2U);
+  EXPECT_EQ(matrix.blocks.front().scene, "a");
+  EXPECT_EQ(matrix.blocks.front().viewport, (Viewport{64, 32}));
+  EXPECT_EQ(matrix.blocks.back().frames, 4);
+}
+
+TEST_F(MatrixFile, EveryBlockHasNoneTwiceAndBothOraclesOnce) {
+  const Matrix matrix =
+      load("[lists]\nculler = [\"none\", \"oracle\", \"frustum.flat\"]\nscene = [\"a\"]\n");
+  const Block& block = matrix.blocks.at(0);
+  EXPECT_EQ(block.cullers.size(), 5U);
+  EXPECT_EQ(count_of(block, registry_.canonical("none")), 2U);
+  EXPECT_EQ(count_of(block, registry_.canonical("oracle[level=object]")), 1U);
+  EXPECT_EQ(count_of(block, registry_.canonical("oracle[level=triangle]")), 1U);
+}
+
+TEST_F(MatrixFile, SpellingsOfOneChainAreOneCell) {
+  const Matrix matrix = load(
+      "[lists]\nculler = [\"frustum.flat\", \"frustum.flat[test=box]\", \" frustum.flat \"]\n"
+      "scene = [\"a\"]\n");
+  EXPECT_EQ(matrix.blocks.at(0).cullers.size(), 5U);
+}
+
+TEST_F(MatrixFile, ExcludeLeavesOutWhatFitsAllItsPatterns) {
+  const Matrix matrix = load(
+      "[lists]\nculler = [\"frustum.flat\", \"backface.polygon\"]\nscene = [\"hares_14\", "
+      "\"city\"]\n"
+      "[[exclude]]\nculler = \"backface.*\"\nscene = \"hares_*\"\n");
+  ASSERT_EQ(matrix.blocks.size(), 2U);
+  const std::string backface = registry_.canonical("backface.polygon");
+  EXPECT_EQ(count_of(matrix.blocks[0], backface), 0U);
+  EXPECT_EQ(count_of(matrix.blocks[1], backface), 1U);
+}
+
+TEST_F(MatrixFile, AdjustChangesTheBlocksThatFit) {
+  const Matrix matrix = load(
+      "rounds = 5\n[lists]\nculler = [\"frustum.flat\"]\nscene = [\"a\", \"b\"]\n"
+      "[[adjust]]\nscene = \"b\"\nframes = 7\nrounds = 2\ntimeout_s = 9.5\n");
+  EXPECT_EQ(matrix.blocks[0].frames, 60);
+  EXPECT_EQ(matrix.blocks[0].rounds, 5);
+  EXPECT_EQ(matrix.blocks[1].frames, 7);
+  EXPECT_EQ(matrix.blocks[1].rounds, 2);
+  EXPECT_DOUBLE_EQ(matrix.blocks[1].timeout_s, 9.5);
+}
+
+TEST_F(MatrixFile, ExtendsStartsFromTheOtherMatrix) {
+  folder_.write("base.toml",
+                "rounds = 3\nseed = 9\n[lists]\nculler = [\"frustum.flat\"]\nscene = [\"a\"]\n");
+  const Matrix matrix = load("extends = \"base\"\nrounds = 4\n[lists]\nscene = [\"b\"]\n");
+  EXPECT_EQ(matrix.blocks.at(0).scene, "b");
+  EXPECT_EQ(matrix.blocks.at(0).rounds, 4);
+  EXPECT_EQ(matrix.blocks.at(0).seed, 9U);
+  EXPECT_EQ(count_of(matrix.blocks.at(0), registry_.canonical("frustum.flat")), 1U);
+}
+
+TEST_F(MatrixFile, MatricesThatExtendEachOtherAreRefused) {
+  folder_.write("test.toml", "extends = \"test\"\n");
+  EXPECT_NE(refusal("extends = \"test\"\n").find("circle"), std::string::npos);
+}
+
+TEST_F(MatrixFile, ErrorsNameFileLineAndWhatWouldBeRight) {
+  const std::string lists = "[lists]\nculler = [\"none\"]\nscene = [\"a\"]\n";
+  const auto expect = [&](const std::string& text, const std::vector<std::string>& words) {
+    const std::string message = refusal(text);
+    for (const std::string& word : words) {
+      EXPECT_NE(message.find(word), std::string::npos) << "'" << word << "' in: " << message;
+    }
+  };
+  expect("rounds = 0\n" + lists, {"test.toml:1", "rounds", "from 1"});
+  expect("rounds = \"many\"\n" + lists, {"test.toml:1", "rounds"});
+  expect("draw = \"vulkan\"\n" + lists, {"test.toml:1", "vulkan", "osmesa", "none"});
+  expect("timeout_s = -1\n" + lists, {"test.toml:1", "timeout_s"});
+  expect(lists + "colour = [1]\n", {"test.toml:4", "colour", "resolution"});
+  expect(lists + "resolution = [\"512\"]\n", {"test.toml:4", "WIDTHxHEIGHT"});
+  expect("[lists]\nculler = [\"none\"]\n", {"scene"});
+  expect("[lists]\nculler = [\"frustum.flat[test=cone]\"]\nscene = [\"a\"]\n",
+         {"cone", "box", "sphere"});
+  expect(lists + "[exclude]\nscene = \"a\"\n", {"test.toml:4", "[[exclude]]"});
+  expect(lists + "[[exclude]]\nscene = \"*\"\n", {"no cell"});
+  expect("extends = \"nothing\"\n" + lists, {"nothing"});
+}
+
+TEST_F(MatrixFile, EveryMatrixOfTheRepositoryCanBeRead) {
+  const std::filesystem::path folder =
+      std::filesystem::path(VISLAB_SOURCE_DIR) / "experiments" / "matrices";
+  const auto matrices = list_matrices(folder);
+  EXPECT_GE(matrices.size(), 2U);
+  for (const auto& [name, description] : matrices) {
+    EXPECT_FALSE(description.empty()) << name;
+    EXPECT_FALSE(load_matrix(name, folder, registry_).blocks.empty()) << name;
+  }
+}
+
+TEST(Matches, AStarStandsForAnyText) {
+  EXPECT_TRUE(matches("*", ""));
+  EXPECT_TRUE(matches("hares_*", "hares_14"));
+  EXPECT_TRUE(matches("*.polygon*", "backface.polygon[open=cull]"));
+  EXPECT_TRUE(matches("a*b*c", "axxbyyc"));
+  EXPECT_FALSE(matches("a*b*c", "axxbyy"));
+  EXPECT_FALSE(matches("hares", "hares_14"));
+  EXPECT_FALSE(matches("", "a"));
+}
+
+}  // namespace
+}  // namespace vislab

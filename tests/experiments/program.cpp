@@ -1,0 +1,58 @@
+#include "tests/experiments/program.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <thread>
+
+#include "experiments/results/files.h"
+#include "tests/experiments/temporary_folder.h"
+
+namespace vislab {
+namespace {
+
+/// In a process group of its own, with its output in two files.
+pid_t start(const std::vector<std::string>& arguments, const std::string& out,
+            const std::string& err) {
+  std::vector<std::string> words{std::string(VISLAB_BINARY_DIR) + "/vislab"};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const pid_t pid = ::fork();
+  if (pid == 0) {
+    ::setpgid(0, 0);
+    const int flags = O_CREAT | O_WRONLY | O_TRUNC;
+    ::dup2(::open(out.c_str(), flags, 0600), STDOUT_FILENO);
+    ::dup2(::open(err.c_str(), flags, 0600), STDERR_FILENO);
+    ::execv(argv[0], argv.data());
+    ::_exit(127);
+  }
+  ::setpgid(pid, pid);
+  return pid;
+}
+
+}  // namespace
+
+ProgramResult run_vislab(const std::vector<std::string>& arguments) {
+  const TemporaryFolder folder;
+  const std::string out = folder.path() / "out";
+  const std::string err = folder.path() / "err";
+  int status = 0;
+  ::waitpid(start(arguments, out, err), &status, 0);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
+}
+
+void kill_vislab(const std::vector<std::string>& arguments, int after_ms) {
+  const TemporaryFolder folder;
+  const pid_t pid = start(arguments, folder.path() / "out", folder.path() / "err");
+  std::this_thread::sleep_for(std::chrono::milliseconds(after_ms));
+  ::kill(-pid, SIGKILL);
+  int status = 0;
+  ::waitpid(pid, &status, 0);
+}
+
+}  // namespace vislab

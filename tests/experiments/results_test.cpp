@@ -1,0 +1,149 @@
+#include <gtest/gtest.h>
+
+#include "common/geometry/random.h"
+#include "common/scene/error.h"
+#include "experiments/results/files.h"
+#include "experiments/results/store.h"
+#include "tests/experiments/temporary_folder.h"
+
+namespace vislab {
+namespace {
+
+namespace fs = std::filesystem;
+
+ResultCell sample_cell() {
+  ResultCell cell;
+  cell.key = {"none", "scene hash", "path hash", {64, 32}, 7, "osmesa", 2, "baseline", "src", 0};
+  cell.culler = "none";
+  cell.scene = "a \"quoted\" scene";
+  cell.path = "orbit";
+  cell.status = ResultCell::Status::done;
+  cell.guarantee = Guarantee::image_exact;
+  cell.granularity = Granularity::triangle;
+  cell.frames = {{"set0", "truth0", 12, {{"plane_tests", 3}}}, {"set1", "truth1", 24, {}}};
+  cell.rounds = {{"session", 0, {0.1, 0.2}, {1.0, 2.0}, {3.0, 4.0}, {5.0, 1.0 / 3.0}}};
+  cell.anchors["oracle"] = {{"session", 0, {2.0, 2.5}}};
+  cell.context = {{"cpu", "a processor"}};
+  return cell;
+}
+
+TEST(ResultCell, ComesBackFromItsFileAsItWas) {
+  const ResultCell cell = sample_cell();
+  const ResultCell back = parse_cell(to_json(cell), "test");
+  EXPECT_EQ(to_json(back), to_json(cell));
+  EXPECT_EQ(back.key.id(), cell.key.id());
+  EXPECT_EQ(back.rounds[0].frame_ms[1], 1.0 / 3.0);
+}
+
+TEST(ResultCell, EveryPartOfTheKeyChangesTheName) {
+  const CellKey key = sample_cell().key;
+  std::vector<CellKey> others(11, key);
+  others[0].chain = "other";
+  others[1].scene_hash = "other";
+  others[2].path_hash = "other";
+  others[3].viewport.width = 65;
+  others[4].viewport.height = 33;
+  others[5].seed = 8;
+  others[6].device = "none";
+  others[7].threads = 1;
+  others[8].simd = "other";
+  others[9].sources = "other";
+  others[10].replicate = 1;
+  for (const CellKey& other : others) EXPECT_NE(other.id(), key.id());
+}
+
+TEST(ResultCell, DamagedTextIsRefusedAndNamed) {
+  const std::string text = to_json(sample_cell());
+  for (std::size_t length = 0; length + 2 < text.size(); length += 37) {
+    try {
+      parse_cell(text.substr(0, length), "cells/x.json");
+      ADD_FAILURE() << "accepted " << length << " bytes of " << text.size();
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("cells/x.json"), std::string::npos);
+    }
+  }
+  std::string other = text;
+  other.replace(other.find("\"chain\":\"none\""), 14, "\"chain\":\"nope\"");
+  EXPECT_THROW(parse_cell(other, "x"), InputError) << "the id no longer fits the key";
+}
+
+TEST(ResultStore, ASetComesBackAsItWas) {
+  const TemporaryFolder folder;
+  const ResultStore store = ResultStore::create(folder.path() / "results");
+  Random random(3);
+  for (int round = 0; round < 20; ++round) {
+    std::vector<VisibleSet::Run> runs;
+    TriangleId at = 0;
+    for (std::uint64_t i = random.below(200); i > 0; --i) {
+      at += 1 + static_cast<std::uint32_t>(random.below(1U << (1 + random.below(20))));
+      const auto count = static_cast<std::uint32_t>(1 + random.below(300));
+      runs.push_back({at, count});
+      at += count;
+    }
+    const VisibleSet set(runs);
+    store.save_set(set.hash(), set);
+    EXPECT_EQ(store.load_set(set.hash()), set);
+  }
+}
+
+TEST(ResultStore, ADamagedSetIsRefused) {
+  const TemporaryFolder folder;
+  const ResultStore store = ResultStore::create(folder.path());
+  const VisibleSet set({{5, 100}, {1000, 3}});
+  store.save_set(set.hash(), set);
+  const fs::path file = folder.path() / "sets" / (set.hash() + ".set");
+  const std::string whole = read_file(file);
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    write_file(file, whole.substr(0, i));
+    EXPECT_THROW(store.load_set(set.hash()), InputError) << i << " bytes";
+    std::string flipped = whole;
+    flipped[i] = static_cast<char>(flipped[i] ^ 0x20);
+    write_file(file, flipped);
+    EXPECT_THROW(store.load_set(set.hash()), InputError) << "byte " << i;
+  }
+}
+
+TEST(ResultStore, VerdictsOfAnotherJudgeOrDamagedOnesDoNotCount) {
+  const TemporaryFolder folder;
+  const ResultStore store = ResultStore::create(folder.path());
+  CellVerdicts verdicts;
+  verdicts.judge = "judge";
+  verdicts.frames.resize(2);
+  verdicts.frames[1].false_px = 4;
+  verdicts.frames[1].wrong_px = {{3, 9}};
+  verdicts.images = {{1, 2}, {3, 4}};
+  verdicts.floor_disputed_px = 5;
+  store.save_verdicts("id", verdicts);
+  const auto back = store.load_verdicts("id", "judge");
+  ASSERT_TRUE(back.has_value());
+  EXPECT_EQ(back->frames, verdicts.frames);
+  EXPECT_EQ(back->images, verdicts.images);
+  EXPECT_EQ(back->floor_disputed_px, 5U);
+  EXPECT_FALSE(store.load_verdicts("id", "another judge").has_value());
+  EXPECT_FALSE(store.load_verdicts("other", "judge").has_value());
+  write_file(folder.path() / "verdicts" / "id.json", "{\"judge\":\"jud");
+  EXPECT_FALSE(store.load_verdicts("id", "judge").has_value());
+}
+
+TEST(Files, AFileThatCannotBeWrittenLeavesNothing) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(write_file(folder.path() / "no" / "such" / "file", "text"), InputError);
+  fs::create_directories(folder.path() / "taken");
+  EXPECT_THROW(write_file(folder.path() / "taken", "text"), InputError);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
+}
+
+TEST(Files, AFileIsReplacedWhole) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "file";
+  write_file(file, "first");
+  write_file(file, "");
+  EXPECT_EQ(read_file(file), "");
+  write_file(file, "third");
+  EXPECT_EQ(read_file(file), "third");
+  EXPECT_THROW(read_file(folder.path()), InputError);
+  EXPECT_THROW(read_file(folder.path() / "missing"), InputError);
+}
+
+}  // namespace
+}  // namespace vislab

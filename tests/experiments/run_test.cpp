@@ -1,0 +1,197 @@
+// Runs of small matrices: resumed, repeated, forced, with one and two threads.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "experiments/results/files.h"
+#include "experiments/results/store.h"
+#include "tests/experiments/program.h"
+#include "tests/experiments/temporary_folder.h"
+
+namespace vislab {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What must not differ between runs: sets, counters and truth of every frame, by chain and scene.
+std::map<std::string, std::string> answers(const fs::path& results) {
+  std::map<std::string, std::string> all;
+  for (const ResultCell& cell : ResultStore::open(results).load_all()) {
+    std::string& text =
+        all[cell.key.chain + " / " + cell.scene + " / " + std::to_string(cell.key.replicate)];
+    for (const CellFrame& frame : cell.frames) {
+      text += frame.set + " " + std::to_string(frame.submitted_triangles);
+      for (const auto& [name, count] : frame.counters) {
+        text += " " + name + "=" + std::to_string(count);
+      }
+      text += "\n";
+    }
+  }
+  return all;
+}
+
+class Run : public ::testing::Test {
+ protected:
+  std::vector<std::string> call(const std::string& matrix, const fs::path& results,
+                                const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments{"run", matrix, "--results", results, "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+  fs::path results() const { return folder_.path() / "results"; }
+  /// A matrix of one scene, so that a test takes a second.
+  fs::path matrix(const std::string& more = "") const {
+    return folder_.write("matrix.toml",
+                         "rounds = 2\n" + more +
+                             "[lists]\nculler = [\"frustum.flat\", \"backface.polygon\", "
+                             "\"occlusion.stop_and_wait\"]\nscene = [\"box_field_tiny\"]\n"
+                             "resolution = [\"64x64\"]\nframes = [5]\n");
+  }
+  std::vector<ResultCell> cells() const { return ResultStore::open(results()).load_all(); }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Run, MeasuresEveryCellWithItsAnchors) {
+  ASSERT_EQ(run_vislab(call(matrix(), results())).exit_code, 0);
+  std::set<std::string> cullers;
+  for (const ResultCell& cell : cells()) {
+    cullers.insert(cell.culler);
+    EXPECT_EQ(cell.status, ResultCell::Status::done) << cell.culler;
+    EXPECT_EQ(cell.rounds.size(), 2U);
+    EXPECT_EQ(cell.frames.size(), 5U);
+    EXPECT_EQ(cell.anchors.size(), 3U) << "none and both oracles, paired with every round";
+    EXPECT_FALSE(cell.context.at("machine").empty());
+    for (const CellFrame& frame : cell.frames) {
+      EXPECT_EQ(ResultStore::open(results()).load_set(frame.set).triangle_count(),
+                frame.submitted_triangles);
+    }
+  }
+  EXPECT_EQ(cullers,
+            (std::set<std::string>{"none", "none (again)", "oracle", "oracle[level=triangle]",
+                                   "frustum.flat", "backface.polygon", "occlusion.stop_and_wait"}));
+}
+
+TEST_F(Run, FindsWhatIsDone) {
+  ASSERT_EQ(run_vislab(call(matrix(), results())).exit_code, 0);
+  std::map<fs::path, std::string> before;
+  for (const auto& entry : fs::directory_iterator(results() / "cells")) {
+    before[entry.path()] = read_file(entry.path());
+  }
+  ASSERT_EQ(run_vislab(call(matrix(), results())).exit_code, 0);
+  for (const auto& [file, content] : before) EXPECT_EQ(read_file(file), content);
+}
+
+TEST_F(Run, GoesOnAfterBeingKilledAndLosesNothing) {
+  const fs::path killed = folder_.path() / "killed";
+  const std::string slow = folder_.write(
+      "slow.toml",
+      "rounds = 12\n[lists]\nculler = [\"frustum.flat\", \"occlusion.stop_and_wait\"]\n"
+      "scene = [\"box_field_tiny\"]\nresolution = [\"256x256\"]\nframes = [20]\n");
+  // Long enough for some passes on any machine; if all is done before, the test still holds.
+  kill_vislab(call(slow, killed), 1500);
+  std::map<std::string, std::size_t> rounds;
+  if (fs::is_directory(killed / "cells")) {
+    for (const ResultCell& cell : ResultStore::open(killed).load_all()) {
+      rounds[cell.key.id()] = cell.rounds.size();
+    }
+  }
+  ASSERT_EQ(run_vislab(call(slow, killed)).exit_code, 0);
+  for (const ResultCell& cell : ResultStore::open(killed).load_all()) {
+    EXPECT_EQ(cell.status, ResultCell::Status::done);
+    EXPECT_EQ(cell.rounds.size(), 12U);
+    const std::set<std::string> sessions = [&] {
+      std::set<std::string> names;
+      for (const Round& round : cell.rounds) names.insert(round.session);
+      return names;
+    }();
+    const std::size_t kept = rounds[cell.key.id()];
+    if (kept > 0 && kept < 12) {
+      EXPECT_EQ(sessions.size(), 2U) << "the rounds from before are kept";
+    }
+  }
+  ASSERT_EQ(run_vislab(call(slow, results())).exit_code, 0);
+  EXPECT_EQ(answers(killed), answers(results()));
+}
+
+TEST_F(Run, GivesTheSameAnswersAgainAndWithAnyNumberOfThreads) {
+  const fs::path one = folder_.path() / "one";
+  const fs::path again = folder_.path() / "again";
+  ASSERT_EQ(run_vislab(call("small", results(), {"--threads", "2"})).exit_code, 0);
+  ASSERT_EQ(run_vislab(call("small", again, {"--threads", "2"})).exit_code, 0);
+  ASSERT_EQ(run_vislab(call("small", one, {"--threads", "1"})).exit_code, 0);
+  EXPECT_EQ(answers(results()), answers(again));
+  EXPECT_EQ(answers(results()), answers(one));
+}
+
+TEST_F(Run, KeepsFailedCellsWithTheirReason) {
+  const ProgramResult result = run_vislab(call(matrix("draw = \"none\"\n"), results()));
+  EXPECT_EQ(result.exit_code, 1);
+  int failed = 0;
+  for (const ResultCell& cell : cells()) {
+    if (cell.status != ResultCell::Status::failed) continue;
+    ++failed;
+    EXPECT_EQ(cell.culler, "occlusion.stop_and_wait");
+    EXPECT_NE(cell.reason.find("device"), std::string::npos) << cell.reason;
+  }
+  EXPECT_EQ(failed, 1);
+}
+
+TEST_F(Run, PutsDownATimeOutToItsCell) {
+  const std::string heavy = folder_.write(
+      "heavy.toml",
+      "rounds = 1\ntimeout_s = 0.001\n[lists]\nculler = [\"occlusion.stop_and_wait\"]\n"
+      "scene = [\"city_tiny\"]\nresolution = [\"512x512\"]\nframes = [60]\n");
+  EXPECT_EQ(run_vislab(call(heavy, results())).exit_code, 1);
+  bool timed_out = false;
+  for (const ResultCell& cell : cells()) {
+    timed_out |= cell.reason.find("timed out after 0.001 s") != std::string::npos;
+  }
+  EXPECT_TRUE(timed_out);
+}
+
+TEST_F(Run, FiltersAndShards) {
+  ASSERT_EQ(run_vislab(call(matrix(), results(), {"--filter", "backface"})).exit_code, 0);
+  for (const ResultCell& cell : cells()) EXPECT_NE(cell.culler, "frustum.flat");
+  const fs::path shard = folder_.path() / "shard";
+  ASSERT_EQ(run_vislab(call("small", shard, {"--shard", "2/3"})).exit_code, 0);
+  for (const ResultCell& cell : ResultStore::open(shard).load_all()) {
+    EXPECT_EQ(cell.scene, "city_tiny");
+  }
+}
+
+TEST_F(Run, ForceMeasuresAgain) {
+  ASSERT_EQ(run_vislab(call(matrix(), results())).exit_code, 0);
+  const std::string before = cells().front().rounds.front().session;
+  ASSERT_EQ(run_vislab(call(matrix(), results(), {"--force"})).exit_code, 0);
+  const ResultCell cell = cells().front();
+  EXPECT_EQ(cell.rounds.size(), 2U);
+  EXPECT_NE(cell.rounds.front().session, before);
+}
+
+TEST_F(Run, ACellOfMendedSourcesIsMeasuredAgainAndOthersAreNot) {
+  ASSERT_EQ(run_vislab(call(matrix(), results())).exit_code, 0);
+  // As if frustum.flat had been another when its cell was measured: the cell bears another name
+  // then.
+  const ResultStore store = ResultStore::open(results());
+  std::string mended;
+  std::map<std::string, std::string> others;
+  for (ResultCell cell : store.load_all()) {
+    const fs::path file = results() / "cells" / (cell.key.id() + ".json");
+    if (cell.culler == "frustum.flat") {
+      mended = cell.key.id();
+      fs::remove(file);
+      cell.key.sources = "sources before the mend";
+      store.save_cell(cell);
+    } else {
+      others[file] = read_file(file);
+    }
+  }
+  ASSERT_EQ(run_vislab(call(matrix(), results())).exit_code, 0);
+  EXPECT_TRUE(store.load_cell(mended).has_value());
+  for (const auto& [file, content] : others) EXPECT_EQ(read_file(file), content);
+}
+
+}  // namespace
+}  // namespace vislab

@@ -1,0 +1,112 @@
+// The verbs that tell: list, describe, plan, export, compare, check, show.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/experiments/program.h"
+#include "tests/experiments/temporary_folder.h"
+
+namespace vislab {
+namespace {
+
+/// One JSON object a line.
+std::vector<nlohmann::json> objects(const std::string& text) {
+  std::vector<nlohmann::json> all;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) all.push_back(nlohmann::json::parse(line));
+  return all;
+}
+
+std::vector<std::string> names(const std::string& text) {
+  std::vector<std::string> all;
+  for (const auto& object : objects(text)) all.push_back(object.at("name"));
+  return all;
+}
+
+bool holds(const std::vector<std::string>& list, const std::string& name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+TEST(Verbs, ListNamesEveryKindOfThing) {
+  EXPECT_TRUE(holds(names(run_vislab({"list", "cullers", "--json"}).out), "frustum.flat"));
+  EXPECT_TRUE(holds(names(run_vislab({"list", "scenes", "--json"}).out), "oa_dm2"));
+  EXPECT_TRUE(holds(names(run_vislab({"list", "matrices", "--json"}).out), "default"));
+  EXPECT_TRUE(holds(names(run_vislab({"list", "metrics", "--json"}).out), "false_px"));
+}
+
+TEST(Verbs, DescribeTellsAboutEveryListedThing) {
+  for (const char* kind : {"cullers", "matrices", "metrics"}) {
+    for (const std::string& name : names(run_vislab({"list", kind, "--json"}).out)) {
+      const ProgramResult result = run_vislab({"describe", name, "--json"});
+      EXPECT_EQ(result.exit_code, 0) << result.err;
+      EXPECT_EQ(objects(result.out).at(0).at("name"), name);
+    }
+  }
+  EXPECT_EQ(objects(run_vislab({"describe", "box_field_tiny", "--json"}).out).at(0).at("objects"),
+            60);
+  EXPECT_NE(run_vislab({"describe", "frustum.flat > backface.polygon"}).out.find("Then:"),
+            std::string::npos);
+}
+
+TEST(Verbs, PlanNamesEveryCellOfAMatrix) {
+  // Three scenes, eight chains, two oracles, none and its control.
+  EXPECT_EQ(objects(run_vislab({"plan", "small", "--json"}).out).size(), 36U);
+}
+
+TEST(Verbs, CheckHoldsACullerToItsContract) {
+  const ProgramResult result = run_vislab({"check", "--culler", "frustum.flat", "--json"});
+  EXPECT_EQ(result.exit_code, 0) << result.out;
+  EXPECT_GT(objects(result.out).size(), 3U);
+}
+
+TEST(Verbs, ExportCompareAndShowReadTheResultsOfARun) {
+  const TemporaryFolder folder;
+  const std::string results = folder.path() / "results";
+  const std::vector<std::string> call{
+      "run",      "--culler", "frustum.flat", "--scene", "box_field_tiny", "--frames", "4",
+      "--rounds", "2",        "--resolution", "64x64",   "--results",      results,    "--json"};
+  const ProgramResult run = run_vislab(call);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(objects(run.out).size(), 5U);
+
+  const ProgramResult exported = run_vislab({"export", "json", "--results", results});
+  ASSERT_EQ(exported.exit_code, 0) << exported.err;
+  for (const auto& cell : objects(exported.out)) {
+    EXPECT_EQ(cell.at("false_px"), 0) << cell;
+    EXPECT_GT(cell.at("frame_ms"), 0.0) << cell;
+  }
+  const std::string csv = run_vislab({"export", "csv", "--results", results}).out;
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 6);
+
+  const ProgramResult compared =
+      run_vislab({"compare", "frustum.flat", "none", "--results", results, "--json"});
+  ASSERT_EQ(compared.exit_code, 0) << compared.err;
+  const nlohmann::json row = objects(compared.out).at(0);
+  EXPECT_LE(row.at("ratio_low"), row.at("ratio"));
+  EXPECT_GE(row.at("ratio_high"), row.at("ratio"));
+
+  const std::string picture = folder.path() / "picture.png";
+  const ProgramResult shown =
+      run_vislab({"show", "--culler", "frustum.flat", "--scene", "box_field_tiny", "--resolution",
+                  "64x64", "--frame", "2", "-o", picture});
+  EXPECT_EQ(shown.exit_code, 0) << shown.err;
+  EXPECT_GT(std::filesystem::file_size(picture), 1000U);
+}
+
+TEST(Verbs, AFieldOfAMillionObjectsIsCulledWithoutDrawing) {
+  const TemporaryFolder folder;
+  const std::string results = folder.path() / "results";
+  const ProgramResult run =
+      run_vislab({"run", "--culler", "none > frustum.flat > frustum.flat[test=sphere]", "--scene",
+                  "box_field_1m", "--frames", "2", "--rounds", "1", "--resolution", "128x128",
+                  "--results", results, "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  for (const auto& cell : objects(run.out)) {
+    EXPECT_EQ(cell.at("false_px"), 0) << cell;
+    EXPECT_TRUE(cell.at("image_px").is_null()) << "not drawn, so no image is judged";
+  }
+}
+
+}  // namespace
+}  // namespace vislab
