@@ -238,6 +238,7 @@ double CellSummary::metric(const std::string& name) const {
   if (name == "max_false_px") return if_judged(max_false_px);
   if (name == "false_objects") return if_judged(false_objects);
   if (name == "false_triangles") return if_judged(false_triangles);
+  if (name == "false_jittered") return if_judged(false_jittered);
   if (name == "image_px") return drawn ? static_cast<double>(image_px) : nan;
   if (name == "disputed_px") return if_judged(disputed_px);
   if (name == "over") return over;
@@ -263,15 +264,6 @@ std::vector<BlockSummary> summarise(const std::vector<JudgedCell>& cells) {
   std::vector<BlockSummary> summaries;
   for (const auto& [key, members] : blocks) summaries.push_back(summarise_block(members));
   return summaries;
-}
-
-std::vector<BlockSummary> summarise(const ResultStore& store, const std::string& judge) {
-  std::vector<JudgedCell> cells;
-  for (ResultCell& cell : store.load_all()) {
-    std::optional<CellVerdicts> verdicts = store.load_verdicts(cell.key.id(), judge);
-    cells.push_back({std::move(cell), std::move(verdicts)});
-  }
-  return summarise(cells);
 }
 
 }  // namespace vislab

@@ -91,7 +91,4 @@ struct JudgedCell {
 /// the caller's to leave out.
 std::vector<BlockSummary> summarise(const std::vector<JudgedCell>& cells);
 
-/// The same for all cells in the folder, with the verdicts of the judge whose hash is `judge`.
-std::vector<BlockSummary> summarise(const ResultStore& store, const std::string& judge);
-
 }  // namespace vislab
