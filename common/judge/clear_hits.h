@@ -46,7 +46,7 @@ class ClearHits {
   }
 
  private:
-  static constexpr std::size_t entry_count = 4096;
+  static constexpr std::size_t entry_count = 1024;
 
   struct Entry {
     TriangleId triangle = none_id;
