@@ -1,10 +1,9 @@
 // backface.polygon: leaves out triangles that face away from the eye, one plane test a triangle.
 //
 // Idea: a triangle of a closed solid that is seen from behind is hidden by the solid itself. The
-// eye
-//   (orthographic: the direction to the viewer) is taken into the mesh's frame once per object,
+//   eye (orthographic: the direction to the viewer) is taken into the mesh's frame once per object,
 //   where the planes of the triangles are known: behind the plane means seen from behind. An affine
-//   map takes the inside of a solid to the inside of its image, so mirrored, sheared and scaled
+//   map takes the inside of a solid to the inside of its image, so turned, sheared and scaled
 //   objects need nothing else.
 // Guarantee: conservative for meshes that are closed, outward and free of self-intersection (other
 //   meshes are kept whole, unless open=cull), because a triangle goes only if the eye is behind its
@@ -14,8 +13,8 @@
 //   object. Memory: 32 bytes a triangle of a mesh; instances share it.
 // Limits: about half of a solid's faces at best; nothing for open meshes; does not see that objects
 //   hide each other. Short runs of kept triangles make long lists of ranges.
-// Sources: Foley et al., the textbook's 17.1 (Hesse form; e = 0 is front); Zachmann slides 7-10;
-//   Kowalka 2016, 2.2.2, eq. 2.1 (normal of a polygon).
+// Sources: textbook chapter 17, Culling (in German), 17.1 (Hesse form; e = 0 is front); Zachmann
+//   slides 7-10; Kowalka 2016, 2.2.2, eq. 2.1 (normal of a polygon).
 
 #include <algorithm>
 #include <cmath>
@@ -48,9 +47,11 @@ CullerInfo describe() {
       "About half of a solid's faces at best; keeps open meshes and objects around the eye whole; "
       "assumes that a closed mesh does not intersect itself. With open=cull the insides of open "
       "meshes disappear.";
-  info.sources = {"The textbook's 17.1, back faces from the Hesse form of their planes",
-                  "Zachmann, Computer-Graphik 2, SS 2012, slides 7-10",
-                  "Kowalka 2016, 2.2.2, eq. 2.1"};
+  info.sources = {
+      "Textbook chapter 17, Culling (in German), 17.1: back faces from the Hesse form of their "
+      "planes",
+      "Zachmann, Computer-Graphik 2, SS 2012, slides 7-10",
+      "Kowalka 2016 (thesis, HAW Hamburg), 2.2.2, eq. 2.1"};
   return info;
 }
 

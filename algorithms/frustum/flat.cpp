@@ -42,7 +42,7 @@ CullerInfo describe() {
                   "Assarsson and Moeller 2000, Optimized View Frustum Culling Algorithms for "
                   "Bounding Boxes",
                   "Zachmann, Computer-Graphik 2, SS 2012, slides 30-38",
-                  "Kowalka 2016, 3.2.1-3.2.2"};
+                  "Kowalka 2016 (thesis, HAW Hamburg), 3.2.1-3.2.2"};
   return info;
 }
 

@@ -9,8 +9,7 @@
 //   that may be cut by the near plane is drawn unasked. threshold_px > 0 leaves out objects that
 //   show no more than that many pixels: approximate.
 // Cost: O(n log n) to sort, one query and one wait a candidate: the device idles while the
-// processor
-//   waits, and the processor while the device draws.
+//   processor waits, and the processor while the device draws.
 // Limits: slow, as a yardstick for methods that hide the waiting; an object outside the image costs
 //   a query too, so chain it behind a frustum culler; a box that shows although its object does not
 //   is kept; objects that are equally far or interlocked may not hide each other.
@@ -111,7 +110,6 @@ class StopAndWait : public ICuller {
   };
 
   bool shows(const Frame& frame, const Aabb& box, DrawSink& out) {
-    if (touches_near_region(frame.camera, box)) return true;
     const Aabb asked = enlarged_for_query(frame.camera, frame.viewport, box);
     if (touches_near_region(frame.camera, asked)) return true;
     if (hand_over(out)) out.flush();

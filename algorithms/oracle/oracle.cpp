@@ -4,8 +4,7 @@
 // Idea: the visible set of each frame is prepared by ray casts before anything is timed; culling is
 //   its intersection with the candidates.
 // Guarantee: image_exact. Truth is sampled (at the pixel centres and at jittered positions), so
-// what
-//   falls between all samples is left out.
+//   what falls between all samples is left out.
 // Cost: O(1) for the whole scene. For a part of it O(visible + candidates) at object level, and
 //   O(candidates * log(visible)) at triangle level.
 // Limits: cannot be had outside of the lab; knows only the path for which truth was prepared.

@@ -1,10 +1,12 @@
 // skeleton.example: a culler to copy. It leaves out objects that lie wholly behind the viewer.
 //
-// (This comment is the method's manual page. Keep these six headings in every culler.)
+// (This comment is the method's manual page. Keep these five headings in every culler.)
 //
-// Idea: what lies behind the near plane cannot be in the image. An object is behind it if its box
-// is. Guarantee: conservative; the box test carries an error bound (surely_outside). Cost:
-// O(candidates), one plane test each. Limits: keeps everything in front of the viewer, seen or not.
+// Idea: what lies behind the near plane cannot be in the image, and an object is behind it if its
+//   box is.
+// Guarantee: conservative; the test of the box carries an error bound (surely_outside).
+// Cost: O(candidates), one plane test each.
+// Limits: keeps everything in front of the viewer, seen or not.
 // Source: one of the six planes of Clark 1976; frustum.flat tests all of them.
 
 #include "common/culler/registry.h"

@@ -31,8 +31,7 @@ class WrongFrustum : public ICuller {
     any_corner_inside    // an object is kept only if one of its corners is inside
   };
 
-  WrongFrustum(const std::string& name, Mistake mistake)
-      : info_(claimed_conservative(name, Granularity::object)), mistake_(mistake) {}
+  WrongFrustum(CullerInfo info, Mistake mistake) : info_(std::move(info)), mistake_(mistake) {}
 
   const CullerInfo& info() const override { return info_; }
   void build(const Scene& scene, const BuildContext&) override {
@@ -104,19 +103,24 @@ class FlippedBackface : public ICuller {
   std::vector<TriangleRange> kept_;
 };
 
-/// Adds wrong.left_plane_flipped, wrong.all_corners_inside, wrong.any_corner_inside and
-/// wrong.normals_flipped.
+/// Adds wrong.left_plane_flipped, wrong.all_corners_inside, wrong.any_corner_inside,
+/// wrong.normals_flipped, and wrong.image, which has a plane flipped and claims to be image_exact.
 inline void add_wrong_variants(Registry& registry) {
   using Mistake = WrongFrustum::Mistake;
-  const auto add_frustum = [&](const std::string& name, Mistake mistake) {
-    registry.add(
-        {claimed_conservative(name, Granularity::object), [name, mistake](const ParameterValues&) {
-           return std::make_unique<WrongFrustum>(name, mistake);
-         }});
+  const auto add_frustum = [&](const CullerInfo& info, Mistake mistake) {
+    registry.add({info, [info, mistake](const ParameterValues&) {
+                    return std::make_unique<WrongFrustum>(info, mistake);
+                  }});
   };
-  add_frustum("left_plane_flipped", Mistake::left_plane_flipped);
-  add_frustum("all_corners_inside", Mistake::all_corners_inside);
-  add_frustum("any_corner_inside", Mistake::any_corner_inside);
+  const auto claimed = [](const std::string& variant) {
+    return claimed_conservative(variant, Granularity::object);
+  };
+  add_frustum(claimed("left_plane_flipped"), Mistake::left_plane_flipped);
+  add_frustum(claimed("all_corners_inside"), Mistake::all_corners_inside);
+  add_frustum(claimed("any_corner_inside"), Mistake::any_corner_inside);
+  CullerInfo image = claimed("image");
+  image.guarantee = Guarantee::image_exact;
+  add_frustum(image, Mistake::left_plane_flipped);
   registry.add({claimed_conservative("normals_flipped", Granularity::triangle),
                 [](const ParameterValues&) { return std::make_unique<FlippedBackface>(); }});
 }
