@@ -12,20 +12,36 @@ WindowTriangle window_triangle(const Frame& frame, const Scene& scene, TriangleI
                          triangle - scene.first_triangle(object))};
 }
 
-bool is_disputed(const Frame& frame, const Scene& scene, const glm::dvec2& window_px, TriangleId a,
-                 TriangleId b) {
+Disputes::Disputes(const Frame& frame, const Scene& scene)
+    : frame_(&frame), scene_(&scene), slots_a_(slot_count), slots_b_(slot_count) {}
+
+const WindowTriangle& Disputes::find(TriangleId triangle, std::vector<Slot>& slots) {
+  Slot& slot = slots[triangle % slot_count];
+  if (slot.triangle != triangle) {
+    slot.triangle = triangle;
+    slot.window = window_triangle(*frame_, *scene_, triangle);
+  }
+  return *slot.window;
+}
+
+bool Disputes::operator()(const glm::dvec2& window_px, TriangleId a, TriangleId b) {
   if (a == none_id) std::swap(a, b);
   if (a == none_id) return false;
-  const WindowTriangle first = window_triangle(frame, scene, a);
+  const WindowTriangle& first = find(a, slots_a_);
   if (first.edge_distance(window_px) < disputed_edge_px) return true;
   if (b == none_id) return false;
-  const WindowTriangle second = window_triangle(frame, scene, b);
+  const WindowTriangle& second = find(b, slots_b_);
   if (second.edge_distance(window_px) < disputed_edge_px) return true;
   if (!first.contains(window_px) || !second.contains(window_px)) return false;
   const double depth_a = first.depth(window_px);
   const double depth_b = second.depth(window_px);
   return std::abs(depth_a - depth_b) <
          disputed_relative_depth * std::max(std::abs(depth_a), std::abs(depth_b));
+}
+
+bool is_disputed(const Frame& frame, const Scene& scene, const glm::dvec2& window_px, TriangleId a,
+                 TriangleId b) {
+  return Disputes(frame, scene)(window_px, a, b);
 }
 
 }  // namespace vislab

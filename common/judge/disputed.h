@@ -2,6 +2,9 @@
 // rightly differ.
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "common/judge/window_triangle.h"
 #include "common/scene/frame.h"
 
@@ -11,6 +14,29 @@ namespace vislab {
 inline constexpr double disputed_edge_px = 1.0 / 128.0;
 /// Two depths that differ by less than this, relative to the larger, may come in either order.
 inline constexpr double disputed_relative_depth = 1e-4;
+
+/// Decides about samples of one frame, one after another; keeps the triangles seen last, because
+/// neighbouring samples ask for the same ones. Frame and scene outlive it.
+class Disputes {
+ public:
+  Disputes(const Frame& frame, const Scene& scene);
+
+  /// As is_disputed().
+  bool operator()(const glm::dvec2& window_px, TriangleId a, TriangleId b);
+
+ private:
+  static constexpr std::size_t slot_count = 256;
+
+  struct Slot {
+    TriangleId triangle = none_id;
+    std::optional<WindowTriangle> window;
+  };
+  const WindowTriangle& find(TriangleId triangle, std::vector<Slot>& slots);
+
+  const Frame* frame_;
+  const Scene* scene_;
+  std::vector<Slot> slots_a_, slots_b_;  // two, so that finding b does not overwrite a
+};
 
 /// Why a differing sample is excused: it lies within 1/128 pixel of an edge of either triangle
 /// (edges that the near or the far plane cuts included), or both triangles cover it at depths that

@@ -28,12 +28,13 @@ struct ImageJudge::Impl {
       throw std::logic_error("the image judge was not started on this frame");
     }
     std::array<std::uint64_t, 2> counts{};
+    Disputes disputes(frame, scene);
     const auto width = static_cast<std::size_t>(frame.viewport.width);
     for (std::size_t i = 0; i < full.size(); ++i) {
       if (full[i] == ids[i]) continue;
       const glm::dvec2 window_px(static_cast<double>(i % width) + 0.5,
                                  static_cast<double>(i / width) + 0.5);
-      ++counts[is_disputed(frame, scene, window_px, full[i], ids[i]) ? 0 : 1];
+      ++counts[disputes(window_px, full[i], ids[i]) ? 0 : 1];
     }
     return counts;
   }

@@ -29,9 +29,9 @@ void classify(const Frame& frame, const VisibleSet& kept, RayCaster& caster,
   positions.reserve(samples.size());
   for (const LostSample& sample : samples) positions.push_back(sample.window_px);
   const std::vector<RayCaster::Hit> hits = caster.cast(frame, positions, &kept);
+  Disputes disputes(frame, caster.scene());
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    samples[i].disputed = is_disputed(frame, caster.scene(), samples[i].window_px,
-                                      samples[i].triangle, hits[i].triangle);
+    samples[i].disputed = disputes(samples[i].window_px, samples[i].triangle, hits[i].triangle);
   }
 }
 
