@@ -130,6 +130,9 @@ struct Source {
   for (const int signal_number : {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL, SIGALRM, SIGTERM}) {
     signal(signal_number, SIG_DFL);
   }
+  sigset_t no_signals;
+  sigemptyset(&no_signals);
+  sigprocmask(SIG_SETMASK, &no_signals, nullptr);
   alarm(time_limit_s);
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);

@@ -86,6 +86,21 @@ TEST(Bounds, ATransformedBoxHoldsEveryTransformedCornerInExactArithmetic) {
   }
 }
 
+TEST(Bounds, ATransformedBoxHoldsCornersThatDoubleRoundsOntoAFloat) {
+  // The corners are at 1 ± 2^-60: double, and so float, would put the box's faces at 1.
+  const Aabb box{glm::vec3(-1.0F), glm::vec3(1.0F)};
+  glm::dmat4x3 transform(0.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    transform[axis][axis] = 0x1p-60;
+    transform[3][axis] = 1.0;
+  }
+  const Aabb result = transformed(box, transform);
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_LT(result.min[axis], 1.0F);
+    EXPECT_GT(result.max[axis], 1.0F);
+  }
+}
+
 TEST(Bounds, ATransformedBoxIsNoLargerThanRoundingNeeds) {
   const Aabb box{glm::vec3(-1.0F), glm::vec3(1.0F)};
   const Aabb result = transformed(box, glm::dmat4x3(1.0));

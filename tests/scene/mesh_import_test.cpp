@@ -234,6 +234,25 @@ TEST_F(MeshImport, RefusesFormatsThatNobodyReads) {
   EXPECT_TRUE(says(refused("wrong.gltf", "{\"asset\": "), "cannot be imported"));
 }
 
+TEST_F(MeshImport, SurvivesAnImporterThatHangs) {
+  // Nobody ever writes into the pipe that the importer opens as the materials of the mesh.
+  ASSERT_EQ(mkfifo((folder_.path() / "pipe.mtl").c_str(), 0600), 0);
+  const std::filesystem::path file =
+      folder_.write("hanging.obj", "mtllib pipe.mtl\n" + tetrahedron_obj);
+  EXPECT_TRUE(says(input_error([&]() { import_mesh_file(file, 1); }), "did not finish within 1 s"));
+}
+
+TEST_F(MeshImport, SurvivesAnImporterThatCrashes) {
+  // Nodes nested so deep that the importer's recursion leaves its stack.
+  std::string nodes = "{\"mesh\": 0}";
+  constexpr int depth = 300'000;
+  for (int i = 1; i < depth; ++i) nodes += ",{\"children\": [" + std::to_string(i - 1) + "]}";
+  const std::string gltf =
+      "{\"asset\": {\"version\": \"2.0\"}, \"scene\": 0, \"scenes\": [{\"nodes\": [" +
+      std::to_string(depth - 1) + "]}], \"nodes\": [" + nodes + "]}";
+  EXPECT_TRUE(says(refused("deep.gltf", gltf), "cannot be imported: it "));
+}
+
 TEST_F(MeshImport, DoesNotBelieveHeadersThatPromiseTheSky) {
   std::string ply = tetrahedron_ply;
   ply.replace(ply.find("vertex 4"), 8, "vertex 4000000000");
