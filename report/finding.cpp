@@ -56,6 +56,8 @@ Finding find(const BlockSummary& block) {
   }
   if (finding.best != nullptr) {
     finding.kind = kind_of(finding.best->against_none, block.noise);
+  } else if (finding.erring != nullptr) {
+    finding.kind = FindingKind::none_clean;
   }
   const double bar =
       finding.best == nullptr ? 1.0 : std::min(1.0, finding.best->against_none.value);
@@ -73,6 +75,7 @@ Fields finding_fields(const BlockSummary& block, const std::string& scene) {
   fields.flag("within_noise", finding.kind == FindingKind::within_noise);
   fields.flag("loses", finding.kind == FindingKind::loses);
   fields.flag("none_clean", finding.kind == FindingKind::none_clean);
+  fields.flag("no_method", finding.kind == FindingKind::no_method);
   if (finding.best != nullptr) {
     const Estimate& ratio = finding.best->against_none;
     fields.values["best"] = markdown_code(finding.best->culler);

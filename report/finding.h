@@ -10,12 +10,13 @@ enum class FindingKind {
   saves,         // the best method without errors is faster than none, beyond the noise
   within_noise,  // it cannot be told from none
   loses,         // it is slower than none, beyond the noise
-  none_clean     // no method was judged without errors and timed against none
+  none_clean,    // every method that was judged and timed against none makes errors
+  no_method      // no method was both judged and timed against none
 };
 
 struct Finding {
-  FindingKind kind = FindingKind::none_clean;
-  const CellSummary* best = nullptr;    // without errors; null for none_clean
+  FindingKind kind = FindingKind::no_method;
+  const CellSummary* best = nullptr;    // without errors; null for the last two kinds
   const CellSummary* oracle = nullptr;  // the fastest one timed against none, or null
   /// The fastest method with errors, if it is faster than `best` and than none; else null.
   const CellSummary* erring = nullptr;

@@ -18,11 +18,13 @@ std::string fixed(double value, int decimals) {
   return buffer.data();
 }
 
+constexpr int most_decimals = 4;
+
 /// Decimals that show three significant digits of the value.
-int decimals_for(double value) {
+int decimals_for(double value, int most = most_decimals) {
   if (value == 0.0) return 0;
   const int magnitude = static_cast<int>(std::floor(std::log10(std::fabs(value)) + 1e-9));
-  return std::clamp(2 - magnitude, 0, 7);
+  return std::clamp(2 - magnitude, 0, most);
 }
 
 std::string separate_thousands(std::string digits) {
@@ -42,6 +44,7 @@ std::string format_count(std::uint64_t count) { return separate_thousands(std::t
 
 std::string format_number(double value) {
   if (!std::isfinite(value)) return no_value;
+  if (value > 0.0 && value < 0.00005) return "< 0.0001";
   return with_decimals(value, decimals_for(value));
 }
 
@@ -49,8 +52,8 @@ std::string format_estimate(const Estimate& estimate) {
   if (!estimate.measured()) return no_value;
   // Two digits of the interval's width, so that a narrow one is not rounded away.
   const double width = estimate.high - estimate.low;
-  const int decimals = std::max(decimals_for(estimate.value),
-                                width > 0.0 ? std::min(decimals_for(width) - 1, 4) : 0);
+  const int decimals =
+      std::max(decimals_for(estimate.value), width > 0.0 ? decimals_for(width) - 1 : 0);
   return with_decimals(estimate.value, decimals) + " (" + with_decimals(estimate.low, decimals) +
          "–" + with_decimals(estimate.high, decimals) + ")";
 }
@@ -59,7 +62,7 @@ std::string format_percent(double share) {
   if (!std::isfinite(share)) return no_value;
   const double percent = 100.0 * share;
   const double size = std::fabs(percent);
-  const int decimals = size >= 9.95 || size == 0.0 ? 0 : std::max(1, decimals_for(percent) - 1);
+  const int decimals = size >= 9.95 || size == 0.0 ? 0 : std::max(1, decimals_for(percent, 7) - 1);
   return fixed(percent, decimals) + narrow_gap + "%";
 }
 

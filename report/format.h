@@ -12,8 +12,8 @@ namespace vislab {
 /// "15,728,640".
 std::string format_count(std::uint64_t count);
 
-/// Three significant digits, thousands separated, never an exponent above 1e-4: "0.0123", "4.20",
-/// "1,230"; "–" for NaN.
+/// Three significant digits, but at most four decimals, thousands separated: "0.0123", "4.20",
+/// "1,230", "< 0.0001"; "–" for NaN and infinity.
 std::string format_number(double value);
 
 /// "4.20 (4.11–4.35)": the value and its interval, with the same number of decimals.

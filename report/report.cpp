@@ -87,17 +87,17 @@ void write_words(const ReportInput& input, const fs::path& templates, const fs::
 
 void make_page(const fs::path& templates, const fs::path& work) {
   const fs::path absolute = fs::absolute(templates);
-  run_program(pandoc,
-              {"report.md", "--from=markdown-implicit_header_references", "--to=html5",
-               "--metadata-file=" + (absolute / "page.yaml").string(),
-               "--template=" + (absolute / "page.html").string(),
-               "--css=" + (absolute / "style.css").string(),
-               "--bibliography=" + (absolute / "bibliography.bib").string(), "--citeproc",
-               "--mathml", "--standalone", "--self-contained", "--toc", "--toc-depth=2",
-               "--number-sections", "--section-divs",
-               // Tables keep the widths that their content asks for.
-               "--columns=10000", "--output=index.html"},
-              work, time_limit);
+  run_program(
+      pandoc,
+      {"report.md", "--from=markdown-implicit_header_references", "--to=html5",
+       "--metadata-file=" + (absolute / "page.yaml").string(),
+       "--template=" + (absolute / "page.html").string(),
+       "--css=" + (absolute / "style.css").string(),
+       "--bibliography=" + (absolute / "bibliography.bib").string(), "--citeproc", "--mathml",
+       "--standalone", "--self-contained", "--toc", "--toc-depth=2", "--number-sections",
+       // Tables keep the widths that their content asks for.
+       "--columns=10000", "--output=index.html"},
+      work, time_limit);
 }
 
 void print_page(const fs::path& work) {

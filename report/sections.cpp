@@ -1,6 +1,7 @@
 #include "report/sections.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <set>
 
@@ -105,8 +106,8 @@ void add_tables(const BlockSummary& block, Fields& fields) {
       Fields entry;
       entry.values["method"] = markdown_code(cell.culler);
       entry.values["what"] = what;
-      entry.values["reason"] = markdown_text(
-          cell.reason.empty() ? "run `vislab run` again to go on with it" : cell.reason);
+      entry.values["reason"] =
+          markdown_text(cell.reason.empty() ? "another run goes on with it" : cell.reason);
       missing.push_back(std::move(entry));
     }
   }
@@ -199,6 +200,16 @@ Fields floor_fields(const BlockSummary& block, const std::string& title) {
   return row;
 }
 
+/// A fact's name as the report writes it: "build_type" as "Build type".
+std::string context_label(std::string name) {
+  if (name == "dirty") return "Uncommitted changes";
+  if (name == "load") return "Load at the start";
+  if (name.starts_with("cpu")) name.replace(0, 3, "CPU");
+  std::ranges::replace(name, '_', ' ');
+  if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  return name;
+}
+
 /// One entry a fact of the run; where blocks differ, all that was found.
 std::vector<Fields> context_fields(const std::vector<BlockSummary>& blocks) {
   std::map<std::string, std::set<std::string>> facts;
@@ -209,12 +220,9 @@ std::vector<Fields> context_fields(const std::vector<BlockSummary>& blocks) {
   std::vector<Fields> entries;
   for (const auto& [name, texts] : facts) {
     Fields entry;
-    std::string label = name;
-    std::ranges::replace(label, '_', ' ');
-    if (!label.empty()) label[0] = static_cast<char>(std::toupper(label[0]));
     std::string all;
     for (const std::string& text : texts) all += (all.empty() ? "" : "; ") + text;
-    entry.values["name"] = markdown_text(label);
+    entry.values["name"] = markdown_text(context_label(name));
     entry.values["text"] = all.empty() ? "–" : markdown_text(all);
     entries.push_back(std::move(entry));
   }
@@ -272,6 +280,7 @@ Fields report_fields(const ReportInput& input, const std::string& verdict_templa
     noises.push_back(std::move(noise));
     fields.lists["scenes"].push_back(std::move(scene));
   }
+  fields.flag("has_floors", !floors.empty());
   fields.lists["methods"] = method_fields(input);
   fields.lists["metrics"] = metric_fields();
   fields.lists["context"] = context_fields(input.blocks);

@@ -164,11 +164,24 @@ CellSummary summarise_cell(const JudgedCell& judged) {
   return summary;
 }
 
+/// Sorts names as people do, hares_56 before hares_252: numbers count by their value.
+std::string sortable(const std::string& name) {
+  constexpr std::size_t digits = 12;
+  std::string key;
+  for (std::size_t at = 0; at < name.size();) {
+    const std::size_t end = std::min(name.find_first_not_of("0123456789", at), name.size());
+    if (end > at) key.append(digits - std::min(digits, end - at), '0');
+    key.append(name, at, std::max<std::size_t>(end - at, 1));
+    at = std::max(end, at + 1);
+  }
+  return key;
+}
+
 /// What a block is: equal for all cells that may be compared.
 auto block_key(const ResultCell& cell) {
-  return std::tuple(cell.scene, cell.path, cell.key.scene_hash, cell.key.path_hash,
-                    cell.key.viewport.width, cell.key.viewport.height, cell.key.device,
-                    cell.key.threads, cell.key.seed);
+  return std::tuple(sortable(cell.scene), sortable(cell.path), cell.scene, cell.path,
+                    cell.key.scene_hash, cell.key.path_hash, cell.key.viewport.width,
+                    cell.key.viewport.height, cell.key.device, cell.key.threads, cell.key.seed);
 }
 
 /// none, its control, the oracles from coarse to fine, then all others by name.

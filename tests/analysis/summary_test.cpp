@@ -203,6 +203,18 @@ TEST(Summary, CellsOfOtherResolutionsAreOtherBlocks) {
   EXPECT_EQ(summarise({make_cell(frustum, {}), large}).size(), 2U);
 }
 
+TEST(Summary, BlocksStandInTheOrderOfTheirNumbers) {
+  std::vector<JudgedCell> cells;
+  for (const char* scene : {"hares_252", "hares_56", "city", "hares_56_wide", "oa_dm2"}) {
+    cells.push_back(make_cell(frustum, {}));
+    cells.back().cell.scene = scene;
+  }
+  std::vector<std::string> scenes;
+  for (const BlockSummary& block : summarise(cells)) scenes.push_back(block.scene);
+  EXPECT_EQ(scenes,
+            (std::vector<std::string>{"city", "hares_56", "hares_56_wide", "hares_252", "oa_dm2"}));
+}
+
 TEST(Summary, EveryMachineOfABlockIsNamed) {
   JudgedCell other = make_cell("backface.polygon", {});
   other.cell.context["machine"] = "another";

@@ -57,6 +57,14 @@ TEST(Finding, OnlyConservativeMethodsMustKeepWhatLiesBetweenThePixels) {
   EXPECT_TRUE(is_free_of_errors(cell));
 }
 
+TEST(Finding, WhereAllMethodsErrNoneIsRecommended) {
+  BlockSummary block = fabricated_block("made_up");
+  block.cells.push_back(fabricated_cell("wrong", 0.4, 1, 0.0));
+  const Finding finding = find(block);
+  EXPECT_EQ(finding.kind, FindingKind::none_clean);
+  EXPECT_EQ(finding.erring->culler, "wrong");
+}
+
 TEST(Finding, FailedUntimedAndUnjudgedCellsAreNoMethodsToRecommend) {
   BlockSummary block = fabricated_block("made_up");
   for (int i = 0; i < 3; ++i) block.cells.push_back(fabricated_cell("x", 0.3, 0, 3.0));
@@ -64,7 +72,7 @@ TEST(Finding, FailedUntimedAndUnjudgedCellsAreNoMethodsToRecommend) {
   block.cells[5].against_none = Estimate::none();
   block.cells[6].judged = false;
   const Finding finding = find(block);
-  EXPECT_EQ(finding.kind, FindingKind::none_clean);
+  EXPECT_EQ(finding.kind, FindingKind::no_method);
   EXPECT_EQ(finding.best, nullptr);
 }
 

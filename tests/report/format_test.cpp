@@ -19,12 +19,14 @@ TEST(Format, NumbersHaveThreeSignificantDigits) {
   EXPECT_EQ(format_number(0.01234), "0.0123");
   EXPECT_EQ(format_number(1234.5), "1,234");
   EXPECT_EQ(format_number(0.0), "0");
+  EXPECT_EQ(format_number(0.000417), "0.0004");
+  EXPECT_EQ(format_number(0.00001), "< 0.0001");
   EXPECT_EQ(format_number(-12.34), "-12.3");
   EXPECT_EQ(format_number(std::nan("")), "–");
 }
 
 TEST(Format, IntervalsAreNotRoundedAway) {
-  EXPECT_EQ(format_estimate({1.001, 0.9961, 1.0059}), "1.0010 (0.9961–1.0059)");
+  EXPECT_EQ(format_estimate({1.001, 0.9961, 1.0059}), "1.001 (0.996–1.006)");
   EXPECT_EQ(format_estimate({8.0, 7.84, 8.16}), "8.00 (7.84–8.16)");
   EXPECT_EQ(format_estimate(Estimate::none()), "–");
 }
