@@ -2,9 +2,11 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "common/render/gl_camera.h"
 #include "common/scene/error.h"
+#include "common/scene/transform.h"
 
 namespace vislab {
 namespace {
@@ -178,10 +180,13 @@ Image ClassView::Implementation::draw(const Scene& scene, const ObjectsView& obj
   batch_.clear();
   for (const ObjectId object : objects.shown) {
     const Mesh& mesh = scene.mesh_of(object);
+    const bool mirrored = determinant(objects.transforms[object]) < 0.0;
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
       const auto triangle_class =
           static_cast<std::uint32_t>(classes[scene.first_triangle(object) + i]);
-      for (const glm::dvec3& corner : world_triangle(mesh, objects.transforms[object], i)) {
+      auto corners = world_triangle(mesh, objects.transforms[object], i);
+      if (mirrored) std::swap(corners[1], corners[2]);  // so that its outside stays in front
+      for (const glm::dvec3& corner : corners) {
         batch_.push_back({glm::vec3(corner - scene.origin()), triangle_class});
       }
       if (batch_.size() == 3 * batch_triangles) draw_batch(gl);

@@ -52,12 +52,6 @@ void join_vertices(Mesh& mesh) {
   }
 }
 
-Mesh mirrored(Mesh mesh) {
-  for (glm::vec3& p : mesh.positions) p.x = -p.x;
-  for (glm::uvec3& triangle : mesh.triangles) std::swap(triangle.y, triangle.z);
-  return mesh;
-}
-
 glm::dmat4 matrix_from(const aiMatrix4x4& m) {
   return {{m.a1, m.b1, m.c1, m.d1},
           {m.a2, m.b2, m.c2, m.d2},
@@ -79,28 +73,24 @@ class Collector {
  private:
   void add_object(unsigned index, const glm::dmat4& world) {
     if (index >= source_.mNumMeshes) throw std::runtime_error("a node names a mesh out of range");
-    glm::dmat4x3 transform(world);
-    const bool mirror = glm::dot(transform[0], glm::cross(transform[1], transform[2])) < 0.0;
-    const std::pair<unsigned, bool> key(index, mirror);
-    auto found = meshes_.find(key);
+    auto found = meshes_.find(index);
     if (found == meshes_.end()) {
       Mesh mesh = mesh_from(*source_.mMeshes[index]);
       join_vertices(mesh);
       MeshId id = none_id;
       if (!mesh.triangles.empty()) {
         id = static_cast<MeshId>(scene_.meshes.size());
-        scene_.meshes.push_back(mirror ? mirrored(std::move(mesh)) : std::move(mesh));
+        scene_.meshes.push_back(std::move(mesh));
       }
-      found = meshes_.emplace(key, id).first;
+      found = meshes_.emplace(index, id).first;
     }
     if (found->second == none_id) return;
-    if (mirror) transform[0] = -transform[0];
-    scene_.objects.push_back({found->second, transform, none_id});
+    scene_.objects.push_back({found->second, glm::dmat4x3(world), none_id});
   }
 
   const aiScene& source_;
   Scene& scene_;
-  std::map<std::pair<unsigned, bool>, MeshId> meshes_;
+  std::map<unsigned, MeshId> meshes_;
 };
 
 }  // namespace

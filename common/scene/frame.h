@@ -34,7 +34,7 @@ class SceneState {
 
   /// Back to the scene as built: everything shown, original transforms.
   void reset();
-  /// Throws InputError for ids out of range or order, singular or mirroring transforms, objects
+  /// Throws InputError for ids out of range or order, singular transforms, objects
   /// shown that are shown already, or hidden that are hidden; the state is then as it was.
   /// O(changes), plus O(objects) if anything is shown or hidden.
   void apply(const Changes& changes);

@@ -10,8 +10,7 @@ namespace vislab {
 /// Meshes and objects of a file, not yet finished; `name` is the file's stem. Nodes that bear
 /// meshes become objects with the node's transform; nodes that share a mesh still do. Polygons are
 /// triangulated and vertices at equal positions joined; nothing else is dropped, moved or
-/// reordered. A node that mirrors gets a mirrored copy of its mesh, so that front faces stay
-/// counter-clockwise.
+/// reordered.
 ///
 /// The foreign importer runs in a child process, for `time_limit_s` seconds at most: its crash,
 /// hang or failure is an InputError here. ply, off, obj and stl files are checked by the lab first,

@@ -134,6 +134,10 @@ void require_cell(CellId cell, std::size_t count, const std::string& where) {
 
 }  // namespace
 
+double determinant(const glm::dmat4x3& transform) {
+  return glm::dot(transform[0], glm::cross(transform[1], transform[2]));
+}
+
 void require_placing_transform(const glm::dmat4x3& transform, const std::string& where) {
   double lengths = 1.0;
   for (int column = 0; column < 4; ++column) {
@@ -144,10 +148,10 @@ void require_placing_transform(const glm::dmat4x3& transform, const std::string&
     }
     if (column < 3) lengths *= glm::length(transform[column]);
   }
-  const double determinant = glm::dot(transform[0], glm::cross(transform[1], transform[2]));
-  if (!(determinant > 1e-12 * lengths)) {
-    throw InputError(where + ": the transform is singular or a mirror; its determinant must be " +
-                     "positive, and is " + std::to_string(determinant));
+  const double volume = determinant(transform);
+  if (!(std::abs(volume) > 1e-12 * lengths)) {
+    throw InputError(where + ": the transform is singular: its determinant is " +
+                     std::to_string(volume));
   }
 }
 

@@ -39,7 +39,7 @@ struct Mesh {
 /// An instance of a mesh.
 struct Object {
   MeshId mesh = 0;
-  glm::dmat4x3 transform{1.0};  // mesh frame to world; affine, determinant > 0
+  glm::dmat4x3 transform{1.0};  // mesh frame to world; affine, not singular; may mirror
   CellId cell = none_id;
 };
 
@@ -76,10 +76,9 @@ class Scene {
 
   /// Validates everything and computes what the functions below return. To be called once, after
   /// the public members are filled. Throws InputError for used vertices that are NaN or infinite,
-  /// indices out of range, meshes without a triangle, singular or mirroring transforms, no object
-  /// at all, or 2^32 - 1 triangles and more. Unused vertices that are NaN or infinite are removed.
-  /// Fills Mesh::bounds, Mesh::closed and the report. O(n log n) in the meshes, O(n) in the
-  /// objects.
+  /// indices out of range, meshes without a triangle, singular transforms, no object at all, or
+  /// 2^32 - 1 triangles and more. Unused vertices that are NaN or infinite are removed. Fills
+  /// Mesh::bounds, Mesh::closed and the report. O(n log n) in the meshes, O(n) in the objects.
   void finish();
 
   std::size_t object_count() const { return objects.size(); }
@@ -108,7 +107,8 @@ class Scene {
   std::string content_hash_;
 };
 
-/// Vertices of a triangle in the world, double.
+/// Vertices of a triangle in the world, double, in the mesh's order: clockwise seen from outside
+/// where the transform mirrors.
 std::array<glm::dvec3, 3> world_triangle(const Mesh& mesh, const glm::dmat4x3& transform,
                                          std::uint32_t triangle);
 
