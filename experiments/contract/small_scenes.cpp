@@ -112,6 +112,9 @@ SmallScene placed_solids() {
   const glm::dvec3 far_away(30'000.0, -500.0, 20'000.0);
   glm::dmat4x3 sheared = placed(far_away + glm::dvec3(3.0, 0.0, 0.0));
   sheared[1] += glm::dvec3(0.9, 0.0, 0.4);
+  glm::dmat4x3 mirrored = sheared;
+  mirrored[0] = -mirrored[0];
+  mirrored[3] += glm::dvec3(0.0, 0.0, 2.5);
   const double s = std::sin(0.7);
   const double c = std::cos(0.7);
   glm::dmat4x3 turned(glm::dvec3(c, 0.0, -s), glm::dvec3(0.0, 1.0, 0.0), glm::dvec3(s, 0.0, c),
@@ -120,6 +123,8 @@ SmallScene placed_solids() {
       {cube_mesh(), sphere_mesh(8)},
       {{0, sheared, none_id},
        {1, sheared, none_id},
+       {0, mirrored, none_id},
+       {1, mirrored, none_id},
        {0, turned, none_id},
        {1, placed(far_away, {0.01, 1.0, 1.0}), none_id},                                // flat
        {1, placed(far_away, {1.0, 0.001, 1.0}), none_id},                               // very flat
@@ -132,11 +137,12 @@ SmallScene placed_solids() {
     cameras.push_back(camera_at(far_away + 7.0 * side, far_away));
   }
   cameras.push_back(orthographic_at(far_away + glm::dvec3(5.0, 4.0, 60.0), far_away, 9.0));
-  return {"solids turned, sheared, scaled and far away", std::move(scene), standing(cameras),
-          small_viewport};
+  return {"solids turned, sheared, mirrored, scaled and far away", std::move(scene),
+          standing(cameras), small_viewport};
 }
 
-/// A field of cubes and spheres; some move, some hide and come back, once all of them.
+/// A field of cubes and spheres; some move or turn into their mirror image, some hide and come
+/// back, once all of them.
 SmallScene moving_field() {
   Random random(7);
   std::vector<Object> objects;
@@ -155,8 +161,10 @@ SmallScene moving_field() {
     Changes& changes = path.frames[i].changes;
     for (ObjectId object = static_cast<ObjectId>(i); object < 60; object += 9) {
       changes.moved.push_back(object);
-      changes.transforms.push_back(placed(
-          {random.uniform(-15.0, 15.0), random.uniform(-3.0, 3.0), random.uniform(-15.0, 15.0)}));
+      const glm::dvec3 offset(random.uniform(-15.0, 15.0), random.uniform(-3.0, 3.0),
+                              random.uniform(-15.0, 15.0));
+      const double mirror = object % 2 == 0 ? 1.0 : -1.0;
+      changes.transforms.push_back(placed(offset, {mirror, 1.0, 1.0}));
     }
   }
   path.frames[2].changes.hidden = {0, 3, 4, 5, 40, 59};
