@@ -55,6 +55,13 @@ TEST(JitteredSamples, are_the_same_again_and_others_for_another_seed) {
   EXPECT_EQ(same, 0);
 }
 
+TEST(JitteredSamples, are_those_written_here_on_every_machine_and_in_every_build) {
+  const JitteredSamples samples({512, 512}, 16, 1);
+  const EightPositions packet = tile_of(samples, 10, 20)[3];
+  EXPECT_EQ(packet[0], glm::dvec2(0x1.489af3p+5, 0x1.448b67p+5));
+  EXPECT_EQ(packet[7], glm::dvec2(0x1.4e6d39p+5, 0x1.477ed1p+5));
+}
+
 TEST(JitteredSamples, are_spread_evenly_within_their_strata) {
   const JitteredSamples samples({512, 512}, 1, 5);
   double sum_x = 0.0;
