@@ -18,11 +18,14 @@ class ImageJudge {
   ImageJudge(const ImageJudge&) = delete;
   ImageJudge& operator=(const ImageJudge&) = delete;
 
-  /// Draws the full scene (all that is shown) and keeps its ids for judge() and error_floor(). Once
-  /// a frame, before them.
-  void start(const Frame& frame);
+  /// Draws the full scene (all that is shown) and keeps its ids and the truth of the same frame,
+  /// which outlives the calls of judge() and error_floor(). Once a frame, before them.
+  void start(const Frame& frame, const FrameTruth& truth);
 
-  /// Differences between the image of `kept` and the full image.
+  /// Differences between the image of `kept` and the full image. A differing pixel is excused if it
+  /// is disputed between its two triangles; or, where the full image itself differs from truth, if
+  /// truth's triangle is disputed with either of them: at its edge the rasteriser may see what lies
+  /// behind it.
   ImageVerdict judge(const Frame& frame, const VisibleSet& kept);
 
   /// Differences between truth at the pixel centres and the full image: how many are disputed (the
@@ -32,7 +35,7 @@ class ImageJudge {
     std::uint64_t undisputed_px = 0;
     friend bool operator==(const Floor&, const Floor&) = default;
   };
-  Floor error_floor(const Frame& frame, const FrameTruth& truth);
+  Floor error_floor(const Frame& frame);
 
  private:
   struct Impl;

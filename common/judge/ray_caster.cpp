@@ -86,9 +86,17 @@ struct alignas(64) Packet {
     std::memcpy(orthographic ? ray.org_x : ray.dir_x, varying.x.data(), sizeof varying.x);
     std::memcpy(orthographic ? ray.org_y : ray.dir_y, varying.y.data(), sizeof varying.y);
     std::memcpy(orthographic ? ray.org_z : ray.dir_z, varying.z.data(), sizeof varying.z);
+    if (!any_hit_) return;
     std::fill_n(ray.tfar, 8, maker_->far_distance());
     std::fill_n(rays.hit.geomID, 8, RTC_INVALID_GEOMETRY_ID);
     std::fill_n(rays.hit.instID[0], 8, RTC_INVALID_GEOMETRY_ID);
+  }
+
+  void trace(const RayScene& scene, RTCIntersectContext& context) {
+    rtcIntersect8(active.data(), scene.handle(), &context, &rays);
+    unsigned all_bits = RTC_INVALID_GEOMETRY_ID;
+    for (int lane = 0; lane < 8; ++lane) all_bits &= rays.hit.geomID[lane];
+    any_hit_ = all_bits != RTC_INVALID_GEOMETRY_ID;
   }
 
   /// Switches off the rays of tiles that stick out of the image.
@@ -103,11 +111,7 @@ struct alignas(64) Packet {
   /// Lanes that are not active keep what aim() wrote, which is no hit.
   bool hit(int lane) const { return rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID; }
 
-  bool any_hit() const {
-    unsigned all_bits = RTC_INVALID_GEOMETRY_ID;
-    for (int lane = 0; lane < 8; ++lane) all_bits &= rays.hit.geomID[lane];
-    return all_bits != RTC_INVALID_GEOMETRY_ID;
-  }
+  bool any_hit() const { return any_hit_; }
 
   float depth_offset() const { return static_cast<float>(maker_->depth_offset()); }
 
@@ -130,6 +134,7 @@ struct alignas(64) Packet {
 
  private:
   const RayMaker* maker_;
+  bool any_hit_ = true;  // in the last trace, so that results must be cleared before the next
 };
 
 /// Counts the hits of a packet of set J.
@@ -263,7 +268,7 @@ FrameTruth RayCaster::trace(const Frame& frame) {
       for (std::size_t p = 0; p < tile.packet_count(); ++p) {
         packet.aim(tile.varying(p));
         if (sticks_out) packet.activate_inside(tile.positions(p), viewport);
-        rtcIntersect8(packet.active.data(), self.rays.handle(), &context, &packet.rays);
+        packet.trace(self.rays, context);
         if (p > 0) {
           if (packet.any_hit()) count(packet, tile.positions(p), self.rays, worker);
           continue;
@@ -334,7 +339,7 @@ std::vector<RayCaster::Hit> RayCaster::cast(const Frame& frame,
     EightVectors varying;
     maker.vary({&positions, 1}, &varying);
     packet.aim(varying);
-    rtcIntersect8(packet.active.data(), self.rays.handle(), &context.embree, &packet.rays);
+    packet.trace(self.rays, context.embree);
     for (int lane = 0; lane < 8; ++lane) {
       if (!packet.hit(lane)) continue;
       hits[i * 8 + lane] = {packet.triangle(lane, self.rays),
@@ -379,7 +384,7 @@ std::vector<RayCaster::Sample> RayCaster::jittered_hits(const Frame& frame,
       for (std::size_t p = 1; p < tile.packet_count(); ++p) {
         packet.aim(tile.varying(p));
         packet.activate_inside(tile.positions(p), viewport);
-        rtcIntersect8(packet.active.data(), self.rays.handle(), &context, &packet.rays);
+        packet.trace(self.rays, context);
         for (int lane = 0; lane < 8; ++lane) {
           const TriangleId triangle = packet.triangle(lane, self.rays);
           if (triangle != none_id && wanted[triangle] != 0) {

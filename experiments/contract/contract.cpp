@@ -161,7 +161,7 @@ class GuaranteeJudge {
 
   std::string changed(const Frame& frame, const VisibleSet& drawn) {
     if (started_ != frame.index) {
-      image_->start(frame);
+      image_->start(frame, scenario_->truth().frame(frame.index));
       started_ = frame.index;
     }
     const ImageVerdict verdict = image_->judge(frame, drawn);

@@ -35,8 +35,8 @@ void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene
     const FrameTruth& seen = truth.frame(index);
     ImageJudge::Floor floor;
     if (image) {
-      image->start(frame);
-      floor = image->error_floor(frame, seen);
+      image->start(frame, seen);
+      floor = image->error_floor(frame);
     }
     std::map<std::string, VisibleSet> sets;
     std::map<std::pair<std::string, Granularity>, Verdict> verdicts;

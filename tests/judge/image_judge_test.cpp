@@ -28,8 +28,8 @@ TEST(ErrorFloor, of_random_scenes_holds_disputed_pixels_only) {
       RayCaster caster(stage.scene, {.jitter_per_pixel = 1, .seed = 1, .threads = 2});
       const FrameTruth truth = caster.trace(stage.frame);
       ImageJudge judge(stage.scene);
-      judge.start(stage.frame);
-      const ImageJudge::Floor floor = judge.error_floor(stage.frame, truth);
+      judge.start(stage.frame, truth);
+      const ImageJudge::Floor floor = judge.error_floor(stage.frame);
       EXPECT_EQ(floor.undisputed_px, 0U) << "camera " << number << ", seed " << seed;
       disputed += floor.disputed_px;
       pixels += truth.ids.size();
@@ -47,15 +47,17 @@ TEST(ErrorFloor, of_another_frames_truth_is_not_excused) {
   const FrameTruth truth = caster.trace(stage.frame);
   ImageJudge judge(stage.scene);
   stage.frame.camera = camera_at({0.5, 0.0, 6.0}, {0.5, 0.0, 0.0});
-  judge.start(stage.frame);
-  EXPECT_GT(judge.error_floor(stage.frame, truth).undisputed_px, 50U);
+  judge.start(stage.frame, truth);
+  EXPECT_GT(judge.error_floor(stage.frame).undisputed_px, 50U);
 }
 
 TEST(ImageJudge, sees_no_difference_if_only_hidden_things_are_left_out) {
   Stage stage(cubes_at({{0.0, 0.0, 0.0}, {0.0, 0.0, -4.0}, {0.0, 0.0, 20.0}}),
               camera_at({0.0, 0.0, 5.0}, {0.0, 0.0, 0.0}), {65, 63});
+  RayCaster caster(stage.scene, {.jitter_per_pixel = 1, .seed = 1, .threads = 2});
+  const FrameTruth truth = caster.trace(stage.frame);
   ImageJudge judge(stage.scene);
-  judge.start(stage.frame);
+  judge.start(stage.frame, truth);
   EXPECT_EQ(judge.judge(stage.frame, all_but(stage, {})), ImageVerdict{});
   const VisibleSet first = objects_where(stage, [](ObjectId object) { return object == 0; });
   EXPECT_EQ(judge.judge(stage.frame, first), ImageVerdict{});
@@ -67,7 +69,7 @@ TEST(ImageJudge, counts_the_pixels_of_what_is_missing) {
   RayCaster caster(stage.scene, {.jitter_per_pixel = 1, .seed = 1, .threads = 2});
   const FrameTruth truth = caster.trace(stage.frame);
   ImageJudge judge(stage.scene);
-  judge.start(stage.frame);
+  judge.start(stage.frame, truth);
   const VisibleSet second = objects_where(stage, [](ObjectId object) { return object == 1; });
   const ImageVerdict verdict = judge.judge(stage.frame, second);
   const Verdict by_rays = judge_set(stage.frame, truth, second, Granularity::object, caster);
@@ -84,13 +86,14 @@ TEST(ImageJudge, follows_moved_and_hidden_objects_and_another_size) {
               camera_at({0.0, 0.0, 8.0}, {0.0, 0.0, 0.0}), {64, 64});
   RayCaster caster(stage.scene, {.jitter_per_pixel = 1, .seed = 1, .threads = 2});
   ImageJudge judge(stage.scene);
-  judge.start(stage.frame);
-  EXPECT_EQ(judge.error_floor(stage.frame, caster.trace(stage.frame)).undisputed_px, 0U);
+  const FrameTruth before = caster.trace(stage.frame);
+  judge.start(stage.frame, before);
+  EXPECT_EQ(judge.error_floor(stage.frame).undisputed_px, 0U);
   stage.apply(changes({0}, {box_transform({0.0, 1.0, 2.0}, glm::dvec3(0.6))}, {}, {1}));
   stage.frame.viewport = {45, 57};
-  judge.start(stage.frame);
   const FrameTruth truth = caster.trace(stage.frame);
-  EXPECT_EQ(judge.error_floor(stage.frame, truth).undisputed_px, 0U);
+  judge.start(stage.frame, truth);
+  EXPECT_EQ(judge.error_floor(stage.frame).undisputed_px, 0U);
   ASSERT_FALSE(truth.visible().empty());
   EXPECT_LT(truth.visible().back(), 12U) << "only the first cube is shown";
 }
