@@ -103,13 +103,18 @@ TEST(Disputed, is_a_sample_where_two_triangles_have_the_same_depth) {
 }
 
 TEST(Disputed, knows_the_edge_that_the_near_plane_cuts) {
-  Scene scene;
-  add_triangle(scene, {-500, -1, 500}, {500, -1, 500}, {0, -1, -500});
-  // The near plane at 2 m cuts the floor 25 pixels under the middle.
-  Stage stage(std::move(scene), square_camera(2.0, 1000.0), viewport);
-  EXPECT_TRUE(is_disputed(stage.frame, stage.scene, {50.0, 25.0 + 0.9 / 128}, 0, none_id));
-  EXPECT_TRUE(is_disputed(stage.frame, stage.scene, {50.0, 25.0 - 0.9 / 128}, 0, none_id));
-  EXPECT_FALSE(is_disputed(stage.frame, stage.scene, {50.0, 25.0 + 1.1 / 128}, 0, none_id));
+  // A floor that begins behind the eye, and one that begins before it but nearer than the near
+  // plane.
+  for (const float begin : {500.0F, -0.5F}) {
+    Scene scene;
+    add_triangle(scene, {-500, -1, begin}, {500, -1, begin}, {0, -1, -500});
+    // The near plane at 2 m cuts the floor 25 pixels under the middle.
+    Stage stage(std::move(scene), square_camera(2.0, 1000.0), viewport);
+    EXPECT_TRUE(is_disputed(stage.frame, stage.scene, {50.0, 25.0 + 0.9 / 128}, 0, none_id));
+    EXPECT_TRUE(is_disputed(stage.frame, stage.scene, {50.0, 25.0 - 0.9 / 128}, 0, none_id));
+    EXPECT_FALSE(is_disputed(stage.frame, stage.scene, {50.0, 25.0 + 1.1 / 128}, 0, none_id));
+    EXPECT_FALSE(window_triangle(stage.frame, stage.scene, 0).contains({50.0, 24.0}));
+  }
 }
 
 }  // namespace
