@@ -4,6 +4,8 @@
 #include <limits>
 #include <tuple>
 
+#include "common/culler/registry.h"
+
 namespace vislab {
 namespace {
 
@@ -83,6 +85,12 @@ RoundTimes anchor_or_own(const ResultCell& cell, const std::string& chain) {
   return own ? own_times(cell) : anchor_times(cell, chain);
 }
 
+bool all_stages_of(const std::string& chain, std::string_view family) {
+  return std::ranges::all_of(parse_chain(chain), [&](const CullerSpec& stage) {
+    return stage.name.substr(0, stage.name.find('.')) == family;
+  });
+}
+
 void summarise_accuracy(const CellVerdicts& verdicts, CellSummary& summary) {
   std::uint64_t visible_triangles = 0, visible_objects = 0, kept_objects = 0;
   std::uint64_t over_triangles = 0, over_objects = 0, under_triangles = 0, hidden_triangles = 0;
@@ -112,8 +120,15 @@ void summarise_accuracy(const CellVerdicts& verdicts, CellSummary& summary) {
   summary.over = ratio(over_triangles, visible_triangles);
   summary.over_objects = ratio(over_objects, visible_objects);
   summary.under = ratio(under_triangles, visible_triangles);
-  summary.recall =
-      ratio(hidden_triangles - std::min(hidden_triangles, over_triangles), hidden_triangles);
+  const CulledOf hidden{hidden_triangles,
+                        hidden_triangles - std::min(hidden_triangles, over_triangles)};
+  const CulledOf& kind = all_stages_of(summary.canonical, "backface")  ? verdicts.back_facing
+                         : all_stages_of(summary.canonical, "frustum") ? verdicts.outside
+                                                                       : hidden;
+  summary.recall = ratio(kind.culled, kind.cullable);
+  summary.flicker = ratio(verdicts.stability.toggles, verdicts.frames.size());
+  summary.pop_px_frames = verdicts.stability.pop_px_frames;
+  summary.latency_frames = verdicts.stability.latency_frames;
   summary.visible_triangles = ratio(visible_triangles, verdicts.frames.size());
   summary.kept_objects = ratio(kept_objects, verdicts.frames.size());
 }
@@ -126,6 +141,7 @@ CellSummary summarise_cell(const JudgedCell& judged) {
   summary.replicate = cell.key.replicate;
   if (summary.replicate > 0 && !summary.culler.ends_with("(again)")) summary.culler += " (again)";
   summary.canonical = cell.key.chain;
+  summary.asks_device = cell.asks_device;
   summary.anchor = is_none(cell.key) || is_oracle(cell.key.chain);
   summary.status = cell.status;
   summary.reason = cell.reason;
@@ -199,6 +215,10 @@ void model_frame_times(BlockSummary& block) {
                                  ? nan
                                  : none->draw_ms.median.value / none->submitted_triangles;
   for (CellSummary& cell : block.cells) {
+    if (cell.asks_device) {
+      cell.modelled_frame_ms = cell.frame_ms.median.value;
+      continue;
+    }
     cell.modelled_frame_ms = (cell.update_us.median.value + cell.cull_us.median.value) / 1000.0 +
                              cell.submitted_triangles * triangle_ms;
   }
@@ -258,6 +278,9 @@ double CellSummary::metric(const std::string& name) const {
   if (name == "over_objects") return over_objects;
   if (name == "under") return under;
   if (name == "recall") return recall;
+  if (name == "flicker") return judged ? flicker : nan;
+  if (name == "pop") return if_judged(pop_px_frames);
+  if (name == "latency") return if_judged(latency_frames);
   if (name == "build_ms") return build_ms;
   if (name == "update_us") return update_us.median.value;
   if (name == "cull_us") return cull_us.median.value;

@@ -44,13 +44,21 @@ struct CellSummary {
   std::uint64_t image_px = 0, disputed_image_px = 0;
   // Ratios of sums over all frames; NaN where nothing is visible, or for recall nothing is hidden.
   double over = 0.0, over_objects = 0.0, under = 0.0;
-  double recall = 0.0;  // hidden triangles culled / hidden triangles
+  /// Triangles culled / those that a perfect method of the kind would cull: back faces if all
+  /// stages are of the family backface, triangles outside the frustum for frustum, else all
+  /// invisible ones.
+  double recall = 0.0;
+  double flicker = 0.0;  // toggles a frame
+  std::uint64_t pop_px_frames = 0, latency_frames = 0;
   double submitted_triangles = 0.0, visible_triangles = 0.0, kept_objects = 0.0;  // per frame
 
   // Times; NaN if the cell was not timed.
   TimeSummary update_us, cull_us, draw_ms, frame_ms;
   double build_ms = 0.0;
+  /// Test cost + submitted triangles × the cost of one. Methods that ask the device: their
+  /// frame_ms, for their waiting cannot be told from drawing.
   double modelled_frame_ms = 0.0;
+  bool asks_device = false;
   std::uint64_t bytes = 0;
   /// frame_ms of this cell / frame_ms of none, paired by frame and round; NaN without such pairs.
   Estimate against_none;

@@ -110,6 +110,7 @@ std::string to_json(const ResultCell& cell) {
                   {"guarantee", to_string(cell.guarantee)},
                   {"repeatability", to_string(cell.repeatability)},
                   {"granularity", to_string(cell.granularity)},
+                  {"asks_device", cell.asks_device},
                   {"build_ms", cell.build_ms},
                   {"bytes", cell.bytes},
                   {"frames", frames},
@@ -144,6 +145,7 @@ ResultCell parse_cell(const std::string& text, const std::string& where) {
     cell.repeatability =
         from_name(j.at("repeatability").get<std::string>(), repeatabilities, where);
     cell.granularity = from_name(j.at("granularity").get<std::string>(), granularities, where);
+    cell.asks_device = j.at("asks_device");
     cell.build_ms = j.at("build_ms");
     cell.bytes = j.at("bytes");
     for (const json& frame : j.at("frames")) {

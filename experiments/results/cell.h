@@ -66,6 +66,7 @@ struct ResultCell {
   Guarantee guarantee = Guarantee::conservative;
   Repeatability repeatability = Repeatability::stateless;
   Granularity granularity = Granularity::object;
+  bool asks_device = false;  // waits for answers of the device while it culls
 
   double build_ms = 0.0;
   std::uint64_t bytes = 0;

@@ -84,6 +84,12 @@ json to_json(const Verdict& v) {
           {"wrong_px", v.wrong_px}};
 }
 
+json to_json(const CulledOf& count) {
+  return {{"cullable", count.cullable}, {"culled", count.culled}};
+}
+
+CulledOf culled_from(const json& j) { return {j.at("cullable"), j.at("culled")}; }
+
 Verdict verdict_from(const json& j) {
   Verdict v;
   v.pixels = j.at("pixels");
@@ -197,6 +203,9 @@ std::optional<CellVerdicts> ResultStore::load_verdicts(const std::string& id,
     for (const json& image : j.at("images")) {
       verdicts.images.push_back({image.at("image_px"), image.at("disputed_image_px")});
     }
+    verdicts.back_facing = culled_from(j.at("back_facing"));
+    verdicts.outside = culled_from(j.at("outside"));
+    verdicts.stability = {j.at("toggles"), j.at("pop_px_frames"), j.at("latency_frames")};
     verdicts.floor_disputed_px = j.at("floor_disputed_px");
     verdicts.floor_undisputed_px = j.at("floor_undisputed_px");
     return verdicts;
@@ -216,6 +225,11 @@ void ResultStore::save_verdicts(const std::string& id, const CellVerdicts& verdi
   const json j = {{"judge", verdicts.judge},
                   {"frames", frames},
                   {"images", images},
+                  {"back_facing", to_json(verdicts.back_facing)},
+                  {"outside", to_json(verdicts.outside)},
+                  {"toggles", verdicts.stability.toggles},
+                  {"pop_px_frames", verdicts.stability.pop_px_frames},
+                  {"latency_frames", verdicts.stability.latency_frames},
                   {"floor_disputed_px", verdicts.floor_disputed_px},
                   {"floor_undisputed_px", verdicts.floor_undisputed_px}};
   write_file(folder_ / "verdicts" / (id + ".json"), j.dump() + "\n");

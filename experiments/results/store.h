@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "common/culler/visible_set.h"
+#include "common/judge/cullable.h"
 #include "common/judge/metrics.h"
+#include "common/judge/stability.h"
 #include "experiments/results/cell.h"
 
 namespace vislab {
@@ -21,7 +23,9 @@ namespace vislab {
 struct CellVerdicts {
   std::string judge;  // hash of the judge's sources: verdicts of another judge are made again
   std::vector<Verdict> frames;
-  std::vector<ImageVerdict> images;       // empty if nothing was drawn
+  std::vector<ImageVerdict> images;  // empty if nothing was drawn
+  CulledOf back_facing, outside;     // sums over frames
+  Stability stability;
   std::uint64_t floor_disputed_px = 0;    // truth against the unculled image, sum over frames
   std::uint64_t floor_undisputed_px = 0;  // not zero only if the judge itself is at fault
 };

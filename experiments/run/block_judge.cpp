@@ -8,6 +8,14 @@
 #include "experiments/run/path_run.h"
 
 namespace vislab {
+namespace {
+
+void add(CulledOf& sum, const CulledOf& frame) {
+  sum.cullable += frame.cullable;
+  sum.culled += frame.culled;
+}
+
+}  // namespace
 
 void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene, const Path& path,
                  const Viewport& viewport, const PathTruth& truth, RayCaster& caster, bool drawn,
@@ -15,13 +23,15 @@ void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene
   struct Pending {
     const ResultCell* cell;
     CellVerdicts verdicts;
+    StabilityJudge stability;
   };
   std::vector<Pending> pending;
   for (const ResultCell* cell : cells) {
     const std::string id = cell->key.id();
     if (cell->frames.size() == path.frames.size() &&
         !store.load_verdicts(id, judge_source_hash())) {
-      pending.push_back({cell, {judge_source_hash(), {}, {}, 0, 0}});
+      pending.push_back({cell, {}, StabilityJudge(scene)});
+      pending.back().verdicts.judge = judge_source_hash();
     }
   }
   if (pending.empty()) return;
@@ -38,6 +48,8 @@ void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene
       image->start(frame, seen);
       floor = image->error_floor(frame);
     }
+    const ObjectVisibility visibility = object_visibility(scene, seen);
+    const CullableTriangles cullable(frame, scene);
     std::map<std::string, VisibleSet> sets;
     std::map<std::pair<std::string, Granularity>, Verdict> verdicts;
     std::map<std::string, ImageVerdict> images;
@@ -51,6 +63,9 @@ void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene
         verdicts.emplace(key, judge_set(frame, seen, set, granularity, caster));
       }
       entry.verdicts.frames.push_back(verdicts.at(key));
+      add(entry.verdicts.back_facing, cullable.back_facing(set));
+      add(entry.verdicts.outside, cullable.outside(set));
+      entry.stability.add(visibility, set);
       if (image) {
         if (!images.contains(hash)) images.emplace(hash, image->judge(frame, set));
         entry.verdicts.images.push_back(images.at(hash));
@@ -59,7 +74,10 @@ void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene
       entry.verdicts.floor_undisputed_px += floor.undisputed_px;
     }
   });
-  for (const Pending& entry : pending) store.save_verdicts(entry.cell->key.id(), entry.verdicts);
+  for (Pending& entry : pending) {
+    entry.verdicts.stability = entry.stability.verdict();
+    store.save_verdicts(entry.cell->key.id(), entry.verdicts);
+  }
 }
 
 }  // namespace vislab

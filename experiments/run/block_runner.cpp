@@ -206,6 +206,7 @@ class BlockRun {
         runner.cell.guarantee = info.guarantee;
         runner.cell.repeatability = info.repeatability;
         runner.cell.granularity = info.granularity;
+        runner.cell.asks_device = info.needs_device;
         runner.cell.context = context;
         // On record before it starts: if the process dies, the failure has a place to be written
         // to.

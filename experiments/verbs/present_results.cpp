@@ -10,7 +10,8 @@ std::vector<JudgedCell> present_cells(const std::filesystem::path& results,
                                       const Registry& cullers) {
   const ResultStore store = ResultStore::open(results);
   std::vector<JudgedCell> present;
-  for (ResultCell& cell : store.load_all()) {
+  std::vector<ResultCell> stored = store.load_all();
+  for (ResultCell& cell : stored) {
     try {
       // Parameters may have been added since: the canonical name is another then.
       if (cullers.canonical(cell.key.chain) != cell.key.chain) continue;
@@ -20,6 +21,11 @@ std::vector<JudgedCell> present_cells(const std::filesystem::path& results,
     if (chain_source_hash(cell.key.chain) != cell.key.sources) continue;
     std::optional<CellVerdicts> verdicts = store.load_verdicts(cell.key.id(), judge_source_hash());
     present.push_back({std::move(cell), std::move(verdicts)});
+  }
+  if (present.empty() && !stored.empty()) {
+    throw InputError("all results in " + results.string() +
+                     " were measured with other sources than those of this program; run the "
+                     "matrices again");
   }
   return present;
 }

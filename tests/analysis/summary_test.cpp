@@ -138,6 +138,9 @@ TEST(Summary, AccuracyAddsUpOverTheFrames) {
   CellVerdicts verdicts;
   verdicts.frames = {make_verdict(), second};
   verdicts.images = {{0, 1}, {9, 2}};
+  verdicts.outside = {400, 100};
+  verdicts.back_facing = {500, 50};
+  verdicts.stability = {6, 70, 3};
   judged.verdicts = verdicts;
   const CellSummary cell = only_cell(judged);
   EXPECT_TRUE(cell.judged);
@@ -150,11 +153,30 @@ TEST(Summary, AccuracyAddsUpOverTheFrames) {
   EXPECT_DOUBLE_EQ(cell.over, 2.5);
   EXPECT_DOUBLE_EQ(cell.over_objects, 0.5);
   EXPECT_DOUBLE_EQ(cell.under, 0.1);
-  EXPECT_DOUBLE_EQ(cell.recall, 650.0 / 900.0);
+  EXPECT_DOUBLE_EQ(cell.recall, 0.25) << "of what lies outside the frustum";
   EXPECT_DOUBLE_EQ(cell.kept_objects, 5.0);
   EXPECT_DOUBLE_EQ(cell.counters.at("plane_tests"), 8.0);
   EXPECT_DOUBLE_EQ(cell.metric("false_px"), 7.0);
-  EXPECT_TRUE(std::isnan(cell.metric("flicker")));
+  EXPECT_DOUBLE_EQ(cell.metric("flicker"), 3.0);
+  EXPECT_DOUBLE_EQ(cell.metric("pop"), 70.0);
+  EXPECT_DOUBLE_EQ(cell.metric("latency"), 3.0);
+}
+
+TEST(Summary, RecallIsOfWhatAPerfectMethodOfTheKindWouldCull) {
+  CellVerdicts verdicts;
+  verdicts.frames = {make_verdict(), make_verdict()};
+  verdicts.outside = {400, 100};
+  verdicts.back_facing = {500, 50};
+  const auto recall = [&](const std::string& chain) {
+    JudgedCell judged = make_cell(chain, {});
+    judged.verdicts = verdicts;
+    return only_cell(judged).recall;
+  };
+  EXPECT_DOUBLE_EQ(recall("frustum.flat[test=box]"), 0.25);
+  EXPECT_DOUBLE_EQ(recall("backface.polygon > backface.polygon"), 0.1);
+  const double of_hidden = 650.0 / 900.0;
+  EXPECT_DOUBLE_EQ(recall("occlusion.stop_and_wait"), of_hidden);
+  EXPECT_DOUBLE_EQ(recall("frustum.flat > backface.polygon"), of_hidden);
 }
 
 TEST(Summary, WithoutVerdictsNothingIsJudged) {
