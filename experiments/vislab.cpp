@@ -77,11 +77,13 @@ class CommandLine {
     add_json(sub);
   }
   void add_plan() {
-    CLI::App* const sub = verb("plan", "the cells of matrices, without running them", [this] {
-      run_.json = json_;
-      return plan(lab_, run_);
-    });
+    CLI::App* const sub =
+        verb("plan", "the cells of matrices and which are done, without running them", [this] {
+          run_.json = json_;
+          return plan(lab_, run_);
+        });
     sub->add_option("matrix", run_.matrices, "names or files")->required();
+    add_results(sub);
     add_json(sub);
   }
   void add_run() {

@@ -36,7 +36,7 @@ int compare(const Lab& lab, const std::string& a, const std::string& b,
             const std::filesystem::path& results, bool json) {
   const std::string chain_a = lab.cullers.canonical(a);
   const std::string chain_b = lab.cullers.canonical(b);
-  const std::vector<JudgedCell> cells = present_cells(results, lab.cullers);
+  const std::vector<JudgedCell> cells = require_present_cells(results, lab.cullers);
   std::map<std::string, const ResultCell*> by_id;
   for (const JudgedCell& judged : cells) by_id[judged.cell.key.id()] = &judged.cell;
 

@@ -17,7 +17,7 @@ int export_results(const Lab& lab, const std::string& format,
                                    "status", "reason",  "frames", "rounds", "guarantee"};
   for (const Metric& metric : metrics()) columns.emplace_back(metric.name);
   Table table(columns);
-  for (const BlockSummary& block : summarise(present_cells(results, lab.cullers))) {
+  for (const BlockSummary& block : summarise(require_present_cells(results, lab.cullers))) {
     for (const CellSummary& cell : block.cells) {
       std::vector<TableValue> row{cell.id,
                                   block.scene,

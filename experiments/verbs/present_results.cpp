@@ -10,8 +10,7 @@ std::vector<JudgedCell> present_cells(const std::filesystem::path& results,
                                       const Registry& cullers) {
   const ResultStore store = ResultStore::open(results);
   std::vector<JudgedCell> present;
-  std::vector<ResultCell> stored = store.load_all();
-  for (ResultCell& cell : stored) {
+  for (ResultCell& cell : store.load_all()) {
     try {
       // Parameters may have been added since: the canonical name is another then.
       if (cullers.canonical(cell.key.chain) != cell.key.chain) continue;
@@ -22,10 +21,15 @@ std::vector<JudgedCell> present_cells(const std::filesystem::path& results,
     std::optional<CellVerdicts> verdicts = store.load_verdicts(cell.key.id(), judge_source_hash());
     present.push_back({std::move(cell), std::move(verdicts)});
   }
-  if (present.empty() && !stored.empty()) {
-    throw InputError("all results in " + results.string() +
-                     " were measured with other sources than those of this program; run the "
-                     "matrices again");
+  return present;
+}
+
+std::vector<JudgedCell> require_present_cells(const std::filesystem::path& results,
+                                              const Registry& cullers) {
+  std::vector<JudgedCell> present = present_cells(results, cullers);
+  if (present.empty()) {
+    throw InputError("no results in " + results.string() +
+                     " were measured with the sources of this program; run the matrices again");
   }
   return present;
 }

@@ -14,4 +14,8 @@ namespace vislab {
 std::vector<JudgedCell> present_cells(const std::filesystem::path& results,
                                       const Registry& cullers);
 
+/// The same for verbs that need some: throws InputError that says why if there are none.
+std::vector<JudgedCell> require_present_cells(const std::filesystem::path& results,
+                                              const Registry& cullers);
+
 }  // namespace vislab

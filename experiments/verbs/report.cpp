@@ -12,7 +12,7 @@ namespace vislab {
 int report(const Lab& lab, const std::filesystem::path& results,
            const std::filesystem::path& output) {
   ReportInput input;
-  input.blocks = summarise(present_cells(results, lab.cullers));
+  input.blocks = summarise(require_present_cells(results, lab.cullers));
   input.cullers = &lab.cullers;
   StoredPictures pictures(results, lab.data);
   input.picture = [&](const BlockSummary& block, const CellSummary& cell,

@@ -81,11 +81,35 @@ void print_results(const Lab& lab, const RunCall& call, const std::vector<Block>
   table.print(std::cout, call.json);
 }
 
+/// How far a cell of a plan is. Scenes are not loaded: one that was changed since under the same
+/// name is found out by the run.
+std::string status_of(const Block& block, const BlockCuller& culler,
+                      const std::vector<JudgedCell>& stored) {
+  for (const JudgedCell& judged : stored) {
+    const ResultCell& cell = judged.cell;
+    if (cell.key.chain != culler.chain || cell.key.replicate != culler.replicate ||
+        cell.scene_source != block.scene || cell.path_source != block.path ||
+        cell.key.viewport != block.viewport || cell.key.seed != block.seed ||
+        cell.key.threads != block.threads || cell.key.device != block.device) {
+      continue;
+    }
+    if (cell.status == ResultCell::Status::failed) return "failed: " + cell.reason;
+    if (block.frames > 0 && static_cast<int>(cell.frames.size()) != block.frames) continue;
+    const auto rounds = static_cast<int>(cell.rounds.size());
+    return rounds >= block.rounds
+               ? "done"
+               : std::to_string(rounds) + " of " + std::to_string(block.rounds) + " rounds";
+  }
+  return "open";
+}
+
 }  // namespace
 
 int plan(const Lab& lab, const RunCall& call) {
-  Table table(
-      {"block", "scene", "path", "resolution", "frames", "rounds", "device", "threads", "culler"});
+  Table table({"block", "scene", "path", "resolution", "frames", "rounds", "device", "threads",
+               "culler", "status"});
+  std::vector<JudgedCell> stored;
+  if (std::filesystem::exists(call.results)) stored = present_cells(call.results, lab.cullers);
   const std::vector<Block> blocks = blocks_of(lab, call);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const Block& block = blocks[i];
@@ -94,7 +118,8 @@ int plan(const Lab& lab, const RunCall& call) {
                  std::to_string(block.viewport.width) + "x" + std::to_string(block.viewport.height),
                  static_cast<std::uint64_t>(block.frames), static_cast<std::uint64_t>(block.rounds),
                  block.device, static_cast<std::uint64_t>(block.threads),
-                 lab.cullers.short_name(culler.chain) + (culler.replicate > 0 ? " (again)" : "")});
+                 lab.cullers.short_name(culler.chain) + (culler.replicate > 0 ? " (again)" : ""),
+                 status_of(block, culler, stored)});
     }
   }
   table.print(std::cout, call.json);

@@ -1,6 +1,7 @@
 // The verbs that tell: list, describe, plan, export, compare, check, show.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -49,9 +50,21 @@ TEST(Verbs, DescribeTellsAboutEveryListedThing) {
             std::string::npos);
 }
 
-TEST(Verbs, PlanNamesEveryCellOfAMatrix) {
+TEST(Verbs, PlanNamesEveryCellOfAMatrixAndWhichAreDone) {
   // Three scenes, eight chains, two oracles, none and its control.
-  EXPECT_EQ(objects(run_vislab({"plan", "small", "--json"}).out).size(), 36U);
+  const TemporaryFolder folder;
+  const std::string results = folder.path() / "results";
+  const auto statuses = [&] {
+    std::map<std::string, int> count;
+    for (const auto& cell :
+         objects(run_vislab({"plan", "small", "--json", "--results", results}).out)) {
+      ++count[cell.at("status")];
+    }
+    return count;
+  };
+  EXPECT_EQ(statuses(), (std::map<std::string, int>{{"open", 36}}));
+  ASSERT_EQ(run_vislab({"run", "small", "--shard", "1/3", "--results", results}).exit_code, 0);
+  EXPECT_EQ(statuses(), (std::map<std::string, int>{{"done", 12}, {"open", 24}}));
 }
 
 TEST(Verbs, CheckHoldsACullerToItsContract) {
