@@ -36,6 +36,7 @@ CullerInfo describe() {
   info.guarantee = Guarantee::conservative;
   info.repeatability = Repeatability::stateless;
   info.granularity = Granularity::triangle;
+  info.culls = Culls::back_faces;
   info.space = Space::object;
   info.stage = PipelineStage::geometry;
   info.parameters = {ParameterSpec::choice(

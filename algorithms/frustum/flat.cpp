@@ -29,6 +29,7 @@ CullerInfo describe() {
   info.guarantee = Guarantee::conservative;
   info.repeatability = Repeatability::stateless;
   info.granularity = Granularity::object;
+  info.culls = Culls::outside_frustum;
   info.space = Space::object;
   info.stage = PipelineStage::application;
   info.parameters = {ParameterSpec::choice(

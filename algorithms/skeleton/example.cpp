@@ -25,6 +25,7 @@ CullerInfo describe() {
   info.guarantee = Guarantee::conservative;       // nothing visible is ever left out
   info.repeatability = Repeatability::stateless;  // the same frame always gives the same answer
   info.granularity = Granularity::object;         // decides about whole objects
+  info.culls = Culls::outside_frustum;            // what recall measures it against
   info.space = Space::object;                     // compares geometry, not pixels
   info.stage = PipelineStage::application;
   // A parameter is declared here once; listing, validation and documentation follow from that.

@@ -268,6 +268,8 @@ class Chain : public ICuller {
       info_.guarantee = std::max(info_.guarantee, part.guarantee);
       info_.repeatability = std::max(info_.repeatability, part.repeatability);
       info_.granularity = std::max(info_.granularity, part.granularity);
+      // Stages of several kinds together are held to everything that is hidden.
+      info_.culls = first || info_.culls == part.culls ? part.culls : Culls::hidden;
       if (first || part.space == Space::image) info_.space = part.space;
       info_.stage = std::max(info_.stage, part.stage);
       info_.needs_device |= part.needs_device;

@@ -32,6 +32,9 @@ enum class Repeatability {
 /// What it decides about. Ordered from coarse to fine.
 enum class Granularity { object, triangle };
 
+/// What a perfect method of this kind would leave out; the denominator of recall.
+enum class Culls { back_faces, outside_frustum, hidden };
+
 enum class Space { object, image };
 
 /// Where in the pipeline it saves work.
@@ -40,6 +43,7 @@ enum class PipelineStage { application, geometry, raster };
 std::string_view to_string(Guarantee value);
 std::string_view to_string(Repeatability value);
 std::string_view to_string(Granularity value);
+std::string_view to_string(Culls value);
 std::string_view to_string(Space value);
 std::string_view to_string(PipelineStage value);
 
@@ -51,6 +55,7 @@ struct CullerInfo {
   Guarantee guarantee = Guarantee::conservative;
   Repeatability repeatability = Repeatability::stateless;
   Granularity granularity = Granularity::object;
+  Culls culls = Culls::hidden;
   Space space = Space::object;
   PipelineStage stage = PipelineStage::application;
   bool needs_device = false;  // asks the graphics device, so the run has to draw

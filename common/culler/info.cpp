@@ -38,6 +38,18 @@ std::string_view to_string(Granularity value) {
   return "";
 }
 
+std::string_view to_string(Culls value) {
+  switch (value) {
+    case Culls::back_faces:
+      return "back_faces";
+    case Culls::outside_frustum:
+      return "outside_frustum";
+    case Culls::hidden:
+      return "hidden";
+  }
+  return "";
+}
+
 std::string_view to_string(Space value) {
   switch (value) {
     case Space::object:

@@ -50,6 +50,7 @@ void describe_culler(const Registry& cullers, const std::string& chain, bool jso
   facts.add("guarantee", std::string(to_string(info.guarantee)));
   facts.add("repeatability", std::string(to_string(info.repeatability)));
   facts.add("granularity", std::string(to_string(info.granularity)));
+  facts.add("culls", std::string(to_string(info.culls)));
   facts.add("space", std::string(to_string(info.space)));
   facts.add("stage", std::string(to_string(info.stage)));
   facts.add("needs_device", std::string(info.needs_device ? "yes" : "no"));

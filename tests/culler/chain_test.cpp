@@ -240,6 +240,16 @@ TEST(Chain, HasTheWeakestPromisesAndTheFinestGranularityOfItsStages) {
   EXPECT_TRUE(late.needs_truth);
 }
 
+TEST(Chain, CullsWhatAllItsStagesCullOrElseWhatIsHidden) {
+  const Registry registry = all_cullers();
+  const auto culls = [&](const char* chain) { return registry.make(chain)->info().culls; };
+  EXPECT_EQ(culls("frustum.flat > frustum.flat"), Culls::outside_frustum);
+  EXPECT_EQ(culls("backface.polygon > backface.polygon"), Culls::back_faces);
+  EXPECT_EQ(culls("frustum.flat > backface.polygon"), Culls::hidden);
+  EXPECT_EQ(culls("frustum.flat > backface.polygon > frustum.flat"), Culls::hidden);
+  EXPECT_EQ(culls("occlusion.stop_and_wait"), Culls::hidden);
+}
+
 TEST(Chain, AddsUpTheCountersOfItsStages) {
   const Registry registry = all_cullers();
   const Scene scene = row_of_cubes(3);
