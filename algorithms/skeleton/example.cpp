@@ -55,7 +55,8 @@ class Example : public ICuller {
   // 3. The culler itself: goes through what is offered, and emits what is to be drawn.
   void cull(const Frame& frame, const Candidates& candidates, DrawSink& out) override {
     Plane plane = frustum_of(frame.camera).planes[Frustum::near];
-    plane.d += margin_m_;  // moves the plane back
+    plane.d += margin_m_;          // moves the plane back
+    plane.magnitude += margin_m_;  // what d is made of bounds its rounding
     kept_.clear();
     // Candidates are everything that is shown now, or runs of object ids; this loop serves both.
     for_each_object_run(candidates, frame, [&](std::span<const ObjectId> run) {

@@ -21,7 +21,7 @@ float round_up(double value) {
 
 Plane plane_through(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const glm::dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
-  return {normal, -glm::dot(normal, a)};
+  return {normal, -glm::dot(normal, a), std::abs(a.x) + std::abs(a.y) + std::abs(a.z)};
 }
 
 bool Aabb::valid() const {

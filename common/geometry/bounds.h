@@ -14,6 +14,10 @@ namespace vislab {
 struct Plane {
   glm::dvec3 normal{0.0, 0.0, 1.0};
   double d = 0.0;
+  /// Sum of the absolute terms that d was made of. d may be a small rest of large terms, and its
+  /// rounding is then of their size. Who changes d by hand adds what was added; 0 says that d is
+  /// exact or no rest, and |d| is then taken.
+  double magnitude = 0.0;
 
   double signed_distance(const glm::dvec3& p) const { return glm::dot(normal, p) + d; }
 };

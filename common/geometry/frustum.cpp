@@ -1,15 +1,19 @@
 #include "common/geometry/frustum.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace vislab {
 namespace {
 
+double absolute_sum(const glm::dvec3& p) { return std::abs(p.x) + std::abs(p.y) + std::abs(p.z); }
+
 /// Bound on the error of n.p + d in double for a point with float coordinates: the plane's own
-/// rounding (normal and d each carry a few ulp from the camera) and seven operations.
+/// rounding (normal and d each carry a few ulp from the camera) and seven operations. Each part of
+/// the unit normal may be off by a few ulp of 1, however small it is itself: p counts in full.
 double distance_error(const Plane& plane, const glm::dvec3& p) {
-  const double magnitude = std::abs(plane.normal.x * p.x) + std::abs(plane.normal.y * p.y) +
-                           std::abs(plane.normal.z * p.z) + std::abs(plane.d);
+  const double magnitude = absolute_sum(p) + std::max(std::abs(plane.d), plane.magnitude);
   return 16.0 * std::numeric_limits<double>::epsilon() * magnitude;
 }
 
@@ -32,27 +36,31 @@ Frustum frustum_of(const Camera& camera) {
   const Lens& lens = camera.lens;
   const glm::dvec3 forward = -back;
   Frustum frustum;
-  auto set = [&](Frustum::PlaneIndex index, const glm::dvec3& normal, const glm::dvec3& point) {
+  // The plane through eye + axis * distance.
+  auto set = [&](Frustum::PlaneIndex index, const glm::dvec3& normal, const glm::dvec3& axis,
+                 double distance) {
     const glm::dvec3 unit = glm::normalize(normal);
-    frustum.planes[index] = {unit, -glm::dot(unit, point)};
+    const glm::dvec3 way = axis * distance;
+    frustum.planes[index] = {unit, -glm::dot(unit, eye + way),
+                             absolute_sum(eye) + absolute_sum(way)};
   };
   if (lens.projection == Projection::orthographic) {
-    set(Frustum::left, right, eye + right * lens.left);
-    set(Frustum::right, -right, eye + right * lens.right);
-    set(Frustum::bottom, up, eye + up * lens.bottom);
-    set(Frustum::top, -up, eye + up * lens.top);
+    set(Frustum::left, right, right, lens.left);
+    set(Frustum::right, -right, right, lens.right);
+    set(Frustum::bottom, up, up, lens.bottom);
+    set(Frustum::top, -up, up, lens.top);
   } else {
     // Each side plane holds the eye and one edge of the window on the near plane.
-    set(Frustum::left, right * lens.near_m - forward * lens.left, eye);
-    set(Frustum::right, -right * lens.near_m + forward * lens.right, eye);
-    set(Frustum::bottom, up * lens.near_m - forward * lens.bottom, eye);
-    set(Frustum::top, -up * lens.near_m + forward * lens.top, eye);
+    set(Frustum::left, right * lens.near_m - forward * lens.left, forward, 0.0);
+    set(Frustum::right, -right * lens.near_m + forward * lens.right, forward, 0.0);
+    set(Frustum::bottom, up * lens.near_m - forward * lens.bottom, forward, 0.0);
+    set(Frustum::top, -up * lens.near_m + forward * lens.top, forward, 0.0);
   }
-  set(Frustum::near, forward, eye + forward * lens.near_m);
+  set(Frustum::near, forward, forward, lens.near_m);
   if (std::isinf(lens.far_m)) {
     frustum.plane_count = 5;
   } else {
-    set(Frustum::far, back, eye + forward * lens.far_m);
+    set(Frustum::far, back, forward, lens.far_m);
   }
   return frustum;
 }
@@ -60,21 +68,25 @@ Frustum frustum_of(const Camera& camera) {
 Frustum frustum_from_matrix(const glm::dmat4& clip) {
   const glm::dmat4 rows = glm::transpose(clip);
   Frustum frustum;
-  auto set = [&](Frustum::PlaneIndex index, const glm::dvec4& row) {
-    const double length = glm::length(glm::dvec3(row));
-    frustum.planes[index] = {glm::dvec3(row) / length, row.w / length};
+  const glm::dvec4& w = rows[3];
+  // The plane of w + sign * row >= 0.
+  auto set = [&](Frustum::PlaneIndex index, double sign, const glm::dvec4& row) {
+    const glm::dvec4 sum = w + sign * row;
+    const double length = glm::length(glm::dvec3(sum));
+    frustum.planes[index] = {glm::dvec3(sum) / length, sum.w / length,
+                             (std::abs(w.w) + std::abs(row.w)) / length};
   };
-  set(Frustum::left, rows[3] + rows[0]);
-  set(Frustum::right, rows[3] - rows[0]);
-  set(Frustum::bottom, rows[3] + rows[1]);
-  set(Frustum::top, rows[3] - rows[1]);
-  set(Frustum::near, rows[3] + rows[2]);
-  const glm::dvec4 far_row = rows[3] - rows[2];
-  const double scale = glm::length(glm::dvec3(rows[3])) + glm::length(glm::dvec3(rows[2]));
+  set(Frustum::left, 1.0, rows[0]);
+  set(Frustum::right, -1.0, rows[0]);
+  set(Frustum::bottom, 1.0, rows[1]);
+  set(Frustum::top, -1.0, rows[1]);
+  set(Frustum::near, 1.0, rows[2]);
+  const glm::dvec4 far_row = w - rows[2];
+  const double scale = glm::length(glm::dvec3(w)) + glm::length(glm::dvec3(rows[2]));
   if (glm::length(glm::dvec3(far_row)) <= 1e-12 * scale) {
     frustum.plane_count = 5;
   } else {
-    set(Frustum::far, far_row);
+    set(Frustum::far, -1.0, rows[2]);
   }
   return frustum;
 }
@@ -92,7 +104,9 @@ bool surely_inside(const Plane& plane, const Aabb& box) {
 
 bool surely_outside(const Plane& plane, const Sphere& sphere) {
   const glm::dvec3 c(sphere.center);
-  return plane.signed_distance(c) + sphere.radius < -distance_error(plane, c);
+  const double error =
+      distance_error(plane, c) + std::numeric_limits<double>::epsilon() * sphere.radius;
+  return plane.signed_distance(c) + sphere.radius < -error;
 }
 
 bool touches_near_region(const Camera& camera, const Aabb& box) {

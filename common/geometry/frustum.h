@@ -26,7 +26,9 @@ struct Frustum {
 Frustum frustum_of(const Camera& camera);
 
 /// Frustum from a clip matrix (world to OpenGL clip space), after Gribb and Hartmann (2001). A far
-/// plane at infinity is recognised by its vanishing normal and left out.
+/// plane at infinity is recognised by its vanishing normal and left out. The matrix is taken as
+/// exact: what was rounded when it was made (a far eye's coordinates cancel in its last column) is
+/// not known here, so "surely" below is sure only for planes of frustum_of.
 Frustum frustum_from_matrix(const glm::dmat4& clip);
 
 /// True only if every point of the box lies outside the plane, even under rounding: the p-vertex

@@ -42,7 +42,7 @@ class WrongFrustum : public ICuller {
     Frustum frustum = frustum_of(frame.camera);
     if (mistake_ == Mistake::left_plane_flipped) {
       Plane& left = frustum.planes[Frustum::left];
-      left = {-left.normal, -left.d};
+      left = {-left.normal, -left.d, left.magnitude};
     }
     kept_.clear();
     for_each_object_run(candidates, frame, [&](std::span<const ObjectId> run) {

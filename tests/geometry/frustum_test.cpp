@@ -171,6 +171,108 @@ TEST(SphereAgainstPlane, IsNeverCalledOutsideWhileItReachesIn) {
   }
 }
 
+/// Exact distance of a point from the plane through eye + way with the given normal (of any
+/// length), times that length.
+Exact exact_distance(const Camera& camera, int index, const glm::dvec3& point) {
+  const auto& [eye, right, up, back] = camera.pose;
+  const Lens& lens = camera.lens;
+  const Exact near = lens.near_m;
+  Exact distance = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Exact x = right[i], y = up[i], forward = -static_cast<Exact>(back[i]);
+    const Exact from_eye = static_cast<Exact>(point[i]) - static_cast<Exact>(eye[i]);
+    const bool ortho = lens.projection == Projection::orthographic;
+    switch (index) {
+      case Frustum::left:
+        distance +=
+            ortho ? x * (from_eye - x * lens.left) : (x * near - forward * lens.left) * from_eye;
+        break;
+      case Frustum::right:
+        distance +=
+            ortho ? -x * (from_eye - x * lens.right) : (forward * lens.right - x * near) * from_eye;
+        break;
+      case Frustum::bottom:
+        distance += ortho ? y * (from_eye - y * lens.bottom)
+                          : (y * near - forward * lens.bottom) * from_eye;
+        break;
+      case Frustum::top:
+        distance +=
+            ortho ? -y * (from_eye - y * lens.top) : (forward * lens.top - y * near) * from_eye;
+        break;
+      case Frustum::near:
+        distance += forward * (from_eye - forward * near);
+        break;
+      default:
+        distance -= forward * (from_eye - forward * static_cast<Exact>(lens.far_m));
+    }
+  }
+  return distance;
+}
+
+/// A camera up to 1e5 m from the origin, and a point near the origin that one of its planes passes
+/// as nearly as double allows: d is then a small rest of large terms.
+template <typename Check>
+void for_grazing_cameras(Check check) {
+  Random random(25);
+  for (int i = 0; i < 20'000; ++i) {
+    const double reach = std::pow(10.0, random.uniform(0.0, 5.0));
+    const glm::dvec3 point(glm::vec3(random_point(random, 0.01)));
+    Camera camera{look_at(random_point(random, reach), point, random_point(random, 1.0)), Lens()};
+    Pose& pose = camera.pose;
+    const double distance = glm::distance(pose.eye, point);
+    const double window = random.uniform(-2.0, 2.0) * distance;
+    switch (i % 4) {
+      case 0: {  // the left plane: the view is turned until the point lies at the image's edge
+        camera.lens = perspective_lens(random.uniform(0.5, 2.0), 1.3, 0.1, 1e6);
+        const double angle = std::atan2(camera.lens.left, camera.lens.near_m);
+        const glm::dvec3 right = pose.right, back = pose.back;
+        pose.right = right * std::cos(angle) - back * std::sin(angle);
+        pose.back = right * std::sin(angle) + back * std::cos(angle);
+        break;
+      }
+      case 1:  // the left plane of an orthographic camera
+        camera.lens = orthographic_lens(10.0, 1.0, 0.1, 1e6);
+        pose.eye -= pose.right * window;
+        camera.lens.left = window;
+        camera.lens.right = window + 10.0;
+        break;
+      case 2:  // the near plane
+        camera.lens = perspective_lens(1.0, 1.3, distance, 1e6);
+        break;
+      default:  // the far plane
+        camera.lens = perspective_lens(1.0, 1.3, 0.1, distance);
+    }
+    check(camera, point);
+  }
+}
+
+TEST(PlaneOfAFarCamera, IsSureOnlyOfWhatIsTrueInExactArithmetic) {
+  int sure = 0;
+  for_grazing_cameras([&](const Camera& camera, const glm::dvec3& point) {
+    const Frustum frustum = frustum_of(camera);
+    Aabb box;
+    box.extend(glm::vec3(point));
+    for (int index = 0; index < frustum.plane_count; ++index) {
+      const Plane& plane = frustum.planes[static_cast<std::size_t>(index)];
+      const Exact distance = exact_distance(camera, index, point);
+      const bool outside = surely_outside(plane, box);
+      const bool inside = surely_inside(plane, box);
+      if (outside || surely_outside(plane, Sphere{glm::vec3(point), 0.0F})) {
+        ASSERT_TRUE(distance < 0) << "plane " << index;
+      }
+      if (inside) {
+        ASSERT_TRUE(distance > 0) << "plane " << index;
+      }
+      sure += outside || inside ? 1 : 0;
+      // A ten-thousandth of a millimetre is enough to tell, even at 100 km.
+      Plane moved = plane;
+      moved.d += 1e-7 + std::abs(plane.signed_distance(point));
+      ASSERT_TRUE(surely_inside(moved, box));
+    }
+  });
+  EXPECT_GT(sure, 50'000);  // the planes that the point is not near to
+}
+
 TEST(NearRegion, IsTouchedByBoxesThatTheNearPlaneMayCut) {
   const Camera camera{Pose(), perspective_lens(1.0, 1.0, 1.0, 100.0)};
   EXPECT_TRUE(touches_near_region(camera, {glm::vec3(-5.0F), glm::vec3(5.0F)}));

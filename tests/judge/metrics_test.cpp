@@ -219,7 +219,8 @@ TEST_F(FrustumMistakes, none_in_the_right_test) {
 TEST_F(FrustumMistakes, one_planes_sign_flipped) {
   for (int flipped = 0; flipped < 6; ++flipped) {
     frustum_ = frustum_of(judged_.stage.frame.camera);
-    frustum_.planes[flipped] = {-frustum_.planes[flipped].normal, -frustum_.planes[flipped].d};
+    frustum_.planes[flipped] = {-frustum_.planes[flipped].normal, -frustum_.planes[flipped].d,
+                                frustum_.planes[flipped].magnitude};
     const Verdict verdict = judge_without(
         [](const Plane& plane, const Aabb& box) { return surely_outside(plane, box); });
     EXPECT_GT(verdict.false_px, 0U) << "plane " << flipped;
@@ -228,7 +229,7 @@ TEST_F(FrustumMistakes, one_planes_sign_flipped) {
 }
 
 TEST_F(FrustumMistakes, all_normals_flipped) {
-  for (Plane& plane : frustum_.planes) plane = {-plane.normal, -plane.d};
+  for (Plane& plane : frustum_.planes) plane = {-plane.normal, -plane.d, plane.magnitude};
   const Verdict verdict =
       judge_without([](const Plane& plane, const Aabb& box) { return surely_outside(plane, box); });
   EXPECT_GT(verdict.false_px, 0U);
