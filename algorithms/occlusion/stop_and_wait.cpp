@@ -54,7 +54,9 @@ CullerInfo describe() {
 }
 
 /// Orders boxes front to back: squared distance from the eye, or depth for an orthographic camera.
+/// Broken boxes, which are drawn unasked, come at 0: NaN would have no place in an order.
 double nearness(const Camera& camera, const Aabb& box) {
+  if (!box.valid()) return 0.0;
   if (camera.lens.projection == Projection::perspective) {
     return distance_squared(box, camera.pose.eye);
   }
