@@ -9,8 +9,8 @@
 
 namespace vislab {
 
-/// True if the frame times of the block's cells may stand on one axis: they were measured, and all
-/// on the same machine.
+/// True if the frame times of the block's cells may stand on one axis: they were measured with the
+/// drawing in them, and all on the same machine.
 bool has_time_axis(const BlockSummary& block);
 
 /// The cells that have a point in the chart, in the block's order: measured and judged. A cell's

@@ -8,11 +8,15 @@
 namespace vislab {
 namespace {
 
-/// The one of the two that is faster against none.
-const CellSummary* faster(const CellSummary* a, const CellSummary* b) {
+/// The one of the two for which `value` is less; `a` may be null.
+template <typename Value>
+const CellSummary* lesser(const CellSummary* a, const CellSummary* b, Value&& value) {
   if (a == nullptr) return b;
-  return b->against_none.value < a->against_none.value ? b : a;
+  return value(*b) < value(*a) ? b : a;
 }
+
+double time_ratio(const CellSummary& cell) { return cell.against_none.value; }
+double over(const CellSummary& cell) { return cell.over; }
 
 bool is_oracle(const CellSummary& cell) { return cell.anchor && cell.canonical != "none"; }
 
@@ -35,24 +39,56 @@ std::uint64_t wrong_pixels(const CellSummary& cell) {
   return std::max(cell.false_px, cell.drawn ? cell.image_px : 0);
 }
 
+/// Where nothing is drawn: what counts is what is left over.
+Finding find_undrawn(const BlockSummary& block) {
+  Finding finding;
+  finding.kind = FindingKind::not_drawn;
+  for (const CellSummary& cell : block.cells) {
+    if (cell.anchor || cell.status != ResultCell::Status::done) continue;
+    if (!cell.judged || std::isnan(cell.over)) continue;
+    const CellSummary*& place = is_free_of_errors(cell) ? finding.best : finding.erring;
+    place = lesser(place, &cell, over);
+  }
+  if (finding.best != nullptr && finding.erring != nullptr &&
+      finding.erring->over >= finding.best->over) {
+    finding.erring = nullptr;
+  }
+  return finding;
+}
+
+/// What is wrong with the method, the worst first: pixels, objects between them, or rays.
+void add_errors(const CellSummary& cell, Fields& fields) {
+  const bool pixels = wrong_pixels(cell) > 0;
+  const bool objects = !pixels && cell.false_objects > 0;
+  fields.flag("erring_pixels", pixels);
+  fields.flag("erring_objects", objects);
+  fields.flag("erring_rays", !pixels && !objects);
+  fields.values["fast_errors_of"] = format_of(wrong_pixels(cell), cell.pixels);
+  fields.values["fast_objects"] = format_count(cell.false_objects);
+  fields.values["fast_rays_of"] = format_of(cell.false_jittered, cell.jittered);
+}
+
 }  // namespace
 
 bool is_free_of_errors(const CellSummary& cell) {
   if (!cell.judged || wrong_pixels(cell) > 0) return false;
-  return cell.guarantee != Guarantee::conservative || cell.false_jittered == 0;
+  if (cell.guarantee == Guarantee::image_exact) return true;
+  if (cell.guarantee == Guarantee::conservative && cell.false_jittered > 0) return false;
+  return cell.false_objects == 0;
 }
 
 Finding find(const BlockSummary& block) {
+  if (!block.drawn) return find_undrawn(block);
   Finding finding;
   for (const CellSummary& cell : block.cells) {
     if (cell.status != ResultCell::Status::done || !cell.against_none.measured()) continue;
-    if (is_oracle(cell)) finding.oracle = faster(finding.oracle, &cell);
-    if (cell.anchor || !cell.judged) continue;
-    if (is_free_of_errors(cell)) {
-      finding.best = faster(finding.best, &cell);
-    } else {
-      finding.erring = faster(finding.erring, &cell);
+    if (!cell.judged) continue;
+    if (is_oracle(cell) && wrong_pixels(cell) == 0) {
+      finding.oracle = lesser(finding.oracle, &cell, time_ratio);
     }
+    if (cell.anchor) continue;
+    const CellSummary*& place = is_free_of_errors(cell) ? finding.best : finding.erring;
+    place = lesser(place, &cell, time_ratio);
   }
   if (finding.best != nullptr) {
     finding.kind = kind_of(finding.best->against_none, block.noise);
@@ -76,7 +112,12 @@ Fields finding_fields(const BlockSummary& block, const std::string& scene) {
   fields.flag("loses", finding.kind == FindingKind::loses);
   fields.flag("none_clean", finding.kind == FindingKind::none_clean);
   fields.flag("no_method", finding.kind == FindingKind::no_method);
+  const bool drawn = finding.kind != FindingKind::not_drawn;
+  fields.flag("not_drawn", !drawn);
+  fields.flag("undrawn_best", !drawn && finding.best != nullptr);
   if (finding.best != nullptr) {
+    fields.values["over"] = format_number(finding.best->over);
+    fields.values["cull_us"] = format_number(finding.best->cull_us.median.value);
     const Estimate& ratio = finding.best->against_none;
     fields.values["best"] = markdown_code(finding.best->culler);
     fields.values["errors_of"] = format_of(wrong_pixels(*finding.best), finding.best->pixels);
@@ -97,11 +138,13 @@ Fields finding_fields(const BlockSummary& block, const std::string& scene) {
     fields.values["oracle_saving"] = format_percent(1.0 - finding.oracle->against_none.value);
   }
   fields.flag("erring", finding.erring != nullptr);
+  fields.flag("erring_drawn", drawn);
   if (finding.erring != nullptr) {
     fields.values["fast"] = markdown_code(finding.erring->culler);
     fields.values["fast_ratio"] = format_number(finding.erring->against_none.value);
-    fields.values["fast_errors_of"] =
-        format_of(wrong_pixels(*finding.erring), finding.erring->pixels);
+    fields.values["fast_over"] = format_number(finding.erring->over);
+    fields.values["fast_cull_us"] = format_number(finding.erring->cull_us.median.value);
+    add_errors(*finding.erring, fields);
   }
   return fields;
 }

@@ -1,4 +1,5 @@
-// What a block says in one sentence: which method saves how much without an error.
+// What a block says in one sentence: which method saves how much without an error; or where nothing
+// is drawn, which leaves the least over.
 #pragma once
 
 #include "experiments/analysis/summary.h"
@@ -11,19 +12,25 @@ enum class FindingKind {
   within_noise,  // it cannot be told from none
   loses,         // it is slower than none, beyond the noise
   none_clean,    // every method that was judged and timed against none makes errors
-  no_method      // no method was both judged and timed against none
+  no_method,     // no method was both judged and timed against none
+  not_drawn      // nothing is drawn, so nothing is said of savings
 };
 
 struct Finding {
   FindingKind kind = FindingKind::no_method;
-  const CellSummary* best = nullptr;    // without errors; null for the last two kinds
-  const CellSummary* oracle = nullptr;  // the fastest one timed against none, or null
-  /// The fastest method with errors, if it is faster than `best` and than none; else null.
+  /// Without errors: the fastest, or where nothing is drawn, the one with the least over. Null if
+  /// there is none.
+  const CellSummary* best = nullptr;
+  /// The fastest without false pixels that was timed against none, or null.
+  const CellSummary* oracle = nullptr;
+  /// The fastest method with errors, if it is faster than `best` and than none; where nothing is
+  /// drawn, the one with the least over, if it has less than `best`; else null.
   const CellSummary* erring = nullptr;
 };
 
-/// True if the judge found nothing that the cell's guarantee forbids: no false pixel, the image (if
-/// drawn) unchanged, and for a conservative method no lost sample of J either.
+/// True if the judge found no false pixel, the image (if drawn) unchanged, and no false object; for
+/// a conservative method also no lost sample of J. An image_exact method promises only the pixels,
+/// so an object that it loses between them is no error.
 bool is_free_of_errors(const CellSummary& cell);
 
 /// Pointers lead into `block`. Only methods count, not the anchors.

@@ -48,6 +48,12 @@ std::string format_number(double value) {
   return with_decimals(value, decimals_for(value));
 }
 
+std::string format_rounded(double value) {
+  if (!std::isfinite(value) || std::fabs(value) < 1000.0) return format_number(value);
+  const double unit = std::pow(10.0, std::floor(std::log10(std::fabs(value))) - 2.0);
+  return format_number(std::round(value / unit) * unit);
+}
+
 std::string format_estimate(const Estimate& estimate) {
   if (!estimate.measured()) return no_value;
   // Two digits of the interval's width, so that a narrow one is not rounded away.

@@ -16,6 +16,10 @@ std::string format_count(std::uint64_t count);
 /// "1,230", "< 0.0001"; "–" for NaN and infinity.
 std::string format_number(double value);
 
+/// As format_number, but large values are rounded to three significant digits as well: 12345.6 as
+/// "12,300".
+std::string format_rounded(double value);
+
 /// "4.20 (4.11–4.35)": the value and its interval, with the same number of decimals.
 std::string format_estimate(const Estimate& estimate);
 

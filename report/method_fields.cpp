@@ -70,6 +70,19 @@ std::vector<BibliographyKey> bibliography_keys(std::string_view bibliography) {
   return keys;
 }
 
+/// What a method of the kind leaves out, as a reader would say it.
+std::string words_for(Culls culls) {
+  switch (culls) {
+    case Culls::back_faces:
+      return "what faces away";
+    case Culls::outside_frustum:
+      return "what lies outside the frustum";
+    case Culls::hidden:
+      break;
+  }
+  return "all that is invisible";
+}
+
 }  // namespace
 
 std::vector<Fields> method_fields(const ReportInput& input) {
@@ -85,6 +98,7 @@ std::vector<Fields> method_fields(const ReportInput& input) {
     fields.values["guarantee"] = markdown_text(to_string(info.guarantee));
     fields.values["repeatability"] = std::string(to_string(info.repeatability));
     fields.values["granularity"] = std::string(to_string(info.granularity));
+    fields.values["culls"] = words_for(info.culls);
     fields.values["space"] = std::string(to_string(info.space));
     fields.values["stage"] = std::string(to_string(info.stage));
     fields.flag("needs_device", info.needs_device);

@@ -49,15 +49,16 @@ Fields speed_fields(const CellSummary& cell, std::size_t number) {
   row.values["number"] = std::to_string(number);
   row.values["method"] = markdown_code(cell.culler);
   row.values["frame_ms"] = in_cell(cell.frame_ms.median);
-  row.values["frame_p95"] = format_number(cell.frame_ms.p95);
-  row.values["frame_worst"] = format_number(cell.frame_ms.worst);
+  row.values["frame_tail"] = format_number(cell.frame_ms.p95) + " · " +
+                             format_number(cell.frame_ms.p99) + " · " +
+                             format_number(cell.frame_ms.worst);
   row.values["against_none"] = in_cell(cell.against_none);
   row.values["efficiency"] = in_cell(cell.efficiency);
   row.values["update_us"] = format_number(cell.update_us.median.value);
-  row.values["cull_us"] = format_number(cell.cull_us.median.value);
-  row.values["draw_ms"] = format_number(cell.draw_ms.median.value);
+  row.values["cull_us"] = in_cell(cell.cull_us.median);
+  row.values["draw_ms"] = in_cell(cell.draw_ms.median);
   row.values["modelled"] = format_number(cell.modelled_frame_ms);
-  row.values["build_ms"] = format_number(cell.build_ms);
+  row.values["build_ms"] = format_rounded(cell.build_ms);
   row.values["bytes"] = format_bytes(cell.bytes);
   return row;
 }
@@ -177,6 +178,7 @@ Fields scene_fields(const ReportInput& input, std::size_t index,
   fields.values["device"] = markdown_code(block.device);
   fields.values["verdict"] = trimmed_to_one_line(
       fill_template(verdict_template, finding_fields(block, title), "verdict.md"));
+  fields.flag("undrawn", !block.drawn);
   fields.flag("mixed_machines", block.machines.size() > 1);
   fields.values["machine_count"] = std::to_string(block.machines.size());
   const bool charted = !charted_cells(block).empty();
@@ -215,6 +217,9 @@ std::vector<Fields> context_fields(const std::vector<BlockSummary>& blocks) {
   std::map<std::string, std::set<std::string>> facts;
   for (const BlockSummary& block : blocks) {
     for (const auto& [name, text] : block.context) facts[name].insert(text);
+    for (const auto& [name, texts] : block.mixed_context) {
+      facts[name].insert(texts.begin(), texts.end());
+    }
     for (const std::string& machine : block.machines) facts["machine"].insert(machine);
   }
   std::vector<Fields> entries;
@@ -224,6 +229,37 @@ std::vector<Fields> context_fields(const std::vector<BlockSummary>& blocks) {
     for (const std::string& text : texts) all += (all.empty() ? "" : "; ") + text;
     entry.values["name"] = markdown_text(context_label(name));
     entry.values["text"] = all.empty() ? "–" : markdown_text(all);
+    entries.push_back(std::move(entry));
+  }
+  return entries;
+}
+
+/// One entry for each fact of the build that differs between cells or blocks, for then times may
+/// differ for that reason.
+std::vector<Fields> mixed_build_fields(const std::vector<BlockSummary>& blocks) {
+  std::vector<Fields> entries;
+  for (const char* name : {"build_type", "compiler", "compiler_flags", "revision"}) {
+    std::set<std::string> texts;
+    std::string within;
+    for (const BlockSummary& block : blocks) {
+      if (const auto one = block.context.find(name); one != block.context.end()) {
+        texts.insert(one->second);
+      }
+      const auto mixed = block.mixed_context.find(name);
+      if (mixed == block.mixed_context.end()) continue;
+      texts.insert(mixed->second.begin(), mixed->second.end());
+      within += (within.empty() ? "" : "; ") + markdown_text(title_of(blocks, block));
+    }
+    if (texts.size() < 2) continue;
+    Fields entry;
+    entry.values["fact"] = markdown_text(context_label(name));
+    std::string all;
+    for (const std::string& text : texts) {
+      all += (all.empty() ? "" : "; ") + (text.empty() ? "unknown" : markdown_text(text));
+    }
+    entry.values["found"] = all;
+    entry.flag("is_within", !within.empty());
+    entry.values["within"] = within;
     entries.push_back(std::move(entry));
   }
   return entries;
@@ -276,13 +312,15 @@ Fields report_fields(const ReportInput& input, const std::string& verdict_templa
     for (const char* name : {"title", "frame_count", "rounds"}) {
       noise.values[name] = scene.values[name];
     }
-    noise.values["noise"] = format_estimate(block.noise);
+    noise.values["noise"] = block.drawn ? format_estimate(block.noise) : "nothing drawn";
     noises.push_back(std::move(noise));
     fields.lists["scenes"].push_back(std::move(scene));
   }
   fields.flag("has_floors", !floors.empty());
   fields.lists["methods"] = method_fields(input);
   fields.lists["metrics"] = metric_fields();
+  fields.lists["mixed_build"] = mixed_build_fields(input.blocks);
+  fields.flag("is_mixed", !fields.lists["mixed_build"].empty());
   fields.lists["context"] = context_fields(input.blocks);
   return fields;
 }

@@ -16,6 +16,8 @@ std::span<const Metric> metrics() {
       Metric{"false_jittered", "samples", lower,
              "undisputed jittered samples whose triangle was left out"},
       Metric{"image_px", "pixels", lower, "undisputed ids that differ from the unculled image"},
+      Metric{"excused_px", "samples", lower,
+             "disputed samples whose triangle was left out: excused, not false"},
       Metric{"disputed_px", "pixels", neither,
              "the error floor: pixels where rays and rasteriser may rightly differ"},
       Metric{"over", "ratio", lower, "triangles kept but invisible / truly visible"},
@@ -25,7 +27,7 @@ std::span<const Metric> metrics() {
              "culled / cullable by a perfect method of its kind: back faces, what lies outside the "
              "frustum, or (all other methods) what is not visible"},
       Metric{"flicker", "toggles per frame", lower,
-             "changes of an object's verdict that truth does not make"},
+             "changes of an object's verdict that truth does not make / (frames - 1)"},
       Metric{"pop", "pixel frames", lower,
              "pixels missing after the true appearance, summed over frames"},
       Metric{"latency", "frames", lower,

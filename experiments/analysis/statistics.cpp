@@ -98,7 +98,7 @@ Estimate paired_ratio(const SampleGrid& numerator, const SampleGrid& denominator
     }
   }
   std::vector<double> pairs;
-  return bootstrap(ratios.size(), ratios.front().size(), true,
+  return bootstrap(ratios.size(), ratios.front().size(), ratios.size() < few_rounds,
                    [&](const auto& round_indices, const auto& frame_indices) {
                      pairs.clear();
                      for (const std::size_t r : round_indices) {

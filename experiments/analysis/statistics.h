@@ -1,9 +1,10 @@
 // Medians, quantiles and bootstrap intervals of repeated measurements.
 //
 // Samples lie in a grid: rounds (repetitions of a whole path) × frames (of that path). Rounds are a
-// random sample of what could have been measured; frames are not, the path is fixed. Intervals are
-// percentile bootstraps (Efron and Tibshirani, "An Introduction to the Bootstrap", 1993, chapter
-// 13) of 1000 resamples with a fixed seed, so the same samples give the same interval.
+// random sample of what could have been measured; frames are not, the path is fixed: only rounds
+// are resampled, unless there are fewer than three. Intervals are percentile bootstraps (Efron and
+// Tibshirani, "An Introduction to the Bootstrap", 1993, chapter 13) of 1000 resamples with a fixed
+// seed, so the same samples give the same interval.
 #pragma once
 
 #include <vector>
@@ -36,7 +37,7 @@ Estimate median_of_frames(const SampleGrid& rounds);
 
 /// Median of numerator / denominator over all pairs: the same round and the same frame of both
 /// grids, which have the same shape. Pairs without a positive denominator do not count. The
-/// interval comes from resampling rounds and frames.
+/// interval comes from resampling as in median_of_frames().
 Estimate paired_ratio(const SampleGrid& numerator, const SampleGrid& denominator);
 
 }  // namespace vislab

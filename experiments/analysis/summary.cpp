@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <tuple>
-
-#include "common/culler/registry.h"
 
 namespace vislab {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* none_chain = "none";
+constexpr const char* no_device = "none";  // nothing is drawn
 
 bool is_none(const CellKey& key) { return key.chain == none_chain; }
 
@@ -85,13 +85,20 @@ RoundTimes anchor_or_own(const ResultCell& cell, const std::string& chain) {
   return own ? own_times(cell) : anchor_times(cell, chain);
 }
 
-bool all_stages_of(const std::string& chain, std::string_view family) {
-  return std::ranges::all_of(parse_chain(chain), [&](const CullerSpec& stage) {
-    return stage.name.substr(0, stage.name.find('.')) == family;
-  });
+/// Triangles culled and cullable by a perfect method of the kind.
+const CulledOf& culled_of(Culls culls, const CellVerdicts& verdicts, const CulledOf& hidden) {
+  switch (culls) {
+    case Culls::back_faces:
+      return verdicts.back_facing;
+    case Culls::outside_frustum:
+      return verdicts.outside;
+    case Culls::hidden:
+      break;
+  }
+  return hidden;
 }
 
-void summarise_accuracy(const CellVerdicts& verdicts, CellSummary& summary) {
+void summarise_accuracy(const CellVerdicts& verdicts, Culls culls, CellSummary& summary) {
   std::uint64_t visible_triangles = 0, visible_objects = 0, kept_objects = 0;
   std::uint64_t over_triangles = 0, over_objects = 0, under_triangles = 0, hidden_triangles = 0;
   for (const Verdict& v : verdicts.frames) {
@@ -102,7 +109,7 @@ void summarise_accuracy(const CellVerdicts& verdicts, CellSummary& summary) {
     summary.false_triangles += v.false_triangles;
     summary.false_jittered += v.false_jittered;
     summary.jittered += v.jittered;
-    summary.disputed_px += v.disputed_lost_px;
+    summary.excused_px += v.disputed_lost_px;
     visible_triangles += v.visible_triangles;
     visible_objects += v.visible_objects;
     kept_objects += v.kept_objects;
@@ -115,6 +122,7 @@ void summarise_accuracy(const CellVerdicts& verdicts, CellSummary& summary) {
     summary.image_px += image.image_px;
     summary.disputed_image_px += image.disputed_image_px;
   }
+  summary.disputed_px = verdicts.floor_disputed_px;
   summary.drawn = !verdicts.images.empty();
   summary.judged = !verdicts.frames.empty();
   summary.over = ratio(over_triangles, visible_triangles);
@@ -122,11 +130,11 @@ void summarise_accuracy(const CellVerdicts& verdicts, CellSummary& summary) {
   summary.under = ratio(under_triangles, visible_triangles);
   const CulledOf hidden{hidden_triangles,
                         hidden_triangles - std::min(hidden_triangles, over_triangles)};
-  const CulledOf& kind = all_stages_of(summary.canonical, "backface")  ? verdicts.back_facing
-                         : all_stages_of(summary.canonical, "frustum") ? verdicts.outside
-                                                                       : hidden;
+  const CulledOf& kind = culled_of(culls, verdicts, hidden);
   summary.recall = ratio(kind.culled, kind.cullable);
-  summary.flicker = ratio(verdicts.stability.toggles, verdicts.frames.size());
+  summary.flicker = verdicts.frames.size() < 2
+                        ? 0.0
+                        : ratio(verdicts.stability.toggles, verdicts.frames.size() - 1);
   summary.pop_px_frames = verdicts.stability.pop_px_frames;
   summary.latency_frames = verdicts.stability.latency_frames;
   summary.visible_triangles = ratio(visible_triangles, verdicts.frames.size());
@@ -167,12 +175,14 @@ CellSummary summarise_cell(const JudgedCell& judged) {
   }
   summary.over = summary.over_objects = summary.under = summary.recall = nan;
   summary.visible_triangles = summary.kept_objects = nan;
-  if (judged.verdicts) summarise_accuracy(*judged.verdicts, summary);
+  if (judged.verdicts) summarise_accuracy(*judged.verdicts, cell.culls, summary);
 
   summary.update_us = summarise_time(cell.rounds, &Round::update_us);
   summary.cull_us = summarise_time(cell.rounds, &Round::cull_us);
   summary.draw_ms = summarise_time(cell.rounds, &Round::draw_ms);
   summary.frame_ms = summarise_time(cell.rounds, &Round::frame_ms);
+  summary.against_none = summary.efficiency = Estimate::none();
+  if (cell.key.device == no_device) return summary;
   const Pairs none = pair_rounds(cell, anchor_or_own(cell, none_chain));
   summary.against_none = paired_ratio(none.cell, none.anchor);
   const Pairs oracle = pair_rounds(cell, anchor_or_own(cell, oracle_of(cell.granularity)));
@@ -215,6 +225,10 @@ void model_frame_times(BlockSummary& block) {
                                  ? nan
                                  : none->draw_ms.median.value / none->submitted_triangles;
   for (CellSummary& cell : block.cells) {
+    if (!block.drawn) {
+      cell.modelled_frame_ms = nan;
+      continue;
+    }
     if (cell.asks_device) {
       cell.modelled_frame_ms = cell.frame_ms.median.value;
       continue;
@@ -222,6 +236,20 @@ void model_frame_times(BlockSummary& block) {
     cell.modelled_frame_ms = (cell.update_us.median.value + cell.cull_us.median.value) / 1000.0 +
                              cell.submitted_triangles * triangle_ms;
   }
+}
+
+/// The facts that not all cells agree on; a cell without the fact does not differ.
+std::map<std::string, std::vector<std::string>> mixed_context(
+    const std::vector<const JudgedCell*>& cells) {
+  std::map<std::string, std::set<std::string>> facts;
+  for (const JudgedCell* judged : cells) {
+    for (const auto& [name, text] : judged->cell.context) facts[name].insert(text);
+  }
+  std::map<std::string, std::vector<std::string>> mixed;
+  for (const auto& [name, texts] : facts) {
+    if (texts.size() > 1) mixed[name].assign(texts.begin(), texts.end());
+  }
+  return mixed;
 }
 
 BlockSummary summarise_block(const std::vector<const JudgedCell*>& cells) {
@@ -234,11 +262,13 @@ BlockSummary summarise_block(const std::vector<const JudgedCell*>& cells) {
   block.path_hash = first.key.path_hash;
   block.viewport = first.key.viewport;
   block.device = first.key.device;
+  block.drawn = block.device != no_device;
   block.threads = first.key.threads;
   block.seed = first.key.seed;
   block.objects = first.scene_objects;
   block.triangles = first.scene_triangles;
   block.context = first.context;
+  block.mixed_context = mixed_context(cells);
   block.noise = Estimate::none();
   for (const JudgedCell* cell : cells) {
     block.frames = std::max(block.frames, static_cast<int>(cell->cell.frames.size()));
@@ -273,7 +303,8 @@ double CellSummary::metric(const std::string& name) const {
   if (name == "false_triangles") return if_judged(false_triangles);
   if (name == "false_jittered") return if_judged(false_jittered);
   if (name == "image_px") return drawn ? static_cast<double>(image_px) : nan;
-  if (name == "disputed_px") return if_judged(disputed_px);
+  if (name == "excused_px") return if_judged(excused_px);
+  if (name == "disputed_px") return drawn ? static_cast<double>(disputed_px) : nan;
   if (name == "over") return over;
   if (name == "over_objects") return over_objects;
   if (name == "under") return under;

@@ -39,20 +39,21 @@ struct CellSummary {
   std::uint64_t pixels = 0;  // samples of C judged: the n of "0 of n"
   std::uint64_t false_px = 0, max_false_px = 0, false_objects = 0, false_triangles = 0;
   std::uint64_t false_jittered = 0, jittered = 0;
-  std::uint64_t disputed_px = 0;  // lost but excused
+  std::uint64_t excused_px = 0;   // disputed samples that were lost
+  std::uint64_t disputed_px = 0;  // the error floor of the cell's frames, whatever was culled
   bool drawn = false;
   std::uint64_t image_px = 0, disputed_image_px = 0;
   // Ratios of sums over all frames; NaN where nothing is visible, or for recall nothing is hidden.
   double over = 0.0, over_objects = 0.0, under = 0.0;
-  /// Triangles culled / those that a perfect method of the kind would cull: back faces if all
-  /// stages are of the family backface, triangles outside the frustum for frustum, else all
-  /// invisible ones.
+  /// Triangles culled / those that a perfect method of the kind (CullerInfo::culls) would cull.
   double recall = 0.0;
-  double flicker = 0.0;  // toggles a frame
+  double flicker = 0.0;  // toggles / changes from one frame to the next: frames - 1
   std::uint64_t pop_px_frames = 0, latency_frames = 0;
   double submitted_triangles = 0.0, visible_triangles = 0.0, kept_objects = 0.0;  // per frame
 
-  // Times; NaN if the cell was not timed.
+  // Times; NaN if the cell was not timed. Where nothing is drawn, frame_ms and draw_ms say nothing
+  // of the method's worth, and what is made of them (modelled_frame_ms, against_none, efficiency)
+  // is NaN.
   TimeSummary update_us, cull_us, draw_ms, frame_ms;
   double build_ms = 0.0;
   /// Test cost + submitted triangles × the cost of one. Methods that ask the device: their
@@ -79,13 +80,17 @@ struct BlockSummary {
   std::uint64_t seed = 0;
   int frames = 0;
   std::uint64_t objects = 0, triangles = 0;
+  /// False on the device "none": there are no images, and times hold no drawing to be saved.
+  bool drawn = true;
   /// Truth against the unculled image, over all frames.
   std::uint64_t floor_pixels = 0, floor_disputed_px = 0, floor_undisputed_px = 0;
   /// none against its A/A control: how far from 1 the interval reaches is the noise of ratios.
   Estimate noise;
   std::vector<CellSummary> cells;              // none, the oracles, then by name
   std::map<std::string, std::string> context;  // of the first cell
-  std::vector<std::string> machines;           // ids of all machines that measured cells here
+  /// Facts of the context that differ between cells: all values, by name, ascending.
+  std::map<std::string, std::vector<std::string>> mixed_context;
+  std::vector<std::string> machines;  // ids of all machines that measured cells here
 };
 
 /// A cell and what the present judge makes of it (empty: nothing yet).

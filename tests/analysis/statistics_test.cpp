@@ -80,6 +80,17 @@ TEST(Statistics, TheRatioIsTheMedianOfAllPairs) {
   EXPECT_GE(estimate.high, estimate.value);
 }
 
+TEST(Statistics, FramesOfRatiosAreResampledOnlyIfRoundsAreFew) {
+  const RoundSamples cell{1.0, 2.0, 3.0, 4.0, 5.0};
+  const RoundSamples none(5, 1.0);
+  const Estimate three = paired_ratio({cell, cell, cell}, {none, none, none});
+  EXPECT_DOUBLE_EQ(three.low, 3.0);
+  EXPECT_DOUBLE_EQ(three.high, 3.0);
+  const Estimate two = paired_ratio({cell, cell}, {none, none});
+  EXPECT_LT(two.low, 3.0);
+  EXPECT_GT(two.high, 3.0);
+}
+
 TEST(Statistics, PairsWithoutAPositiveDenominatorDoNotCount) {
   EXPECT_DOUBLE_EQ(paired_ratio({{4.0, 6.0}}, {{0.0, 2.0}}).value, 3.0);
   EXPECT_FALSE(paired_ratio({{4.0}}, {{0.0}}).measured());

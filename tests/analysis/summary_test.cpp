@@ -135,14 +135,19 @@ TEST(Summary, AccuracyAddsUpOverTheFrames) {
   second.max_false_px = 5;
   second.false_objects = 1;
   second.jittered = 16000;
+  second.disputed_lost_px = 4;
   CellVerdicts verdicts;
   verdicts.frames = {make_verdict(), second};
   verdicts.images = {{0, 1}, {9, 2}};
+  verdicts.floor_disputed_px = 21;
   verdicts.outside = {400, 100};
   verdicts.back_facing = {500, 50};
   verdicts.stability = {6, 70, 3};
   judged.verdicts = verdicts;
+  judged.cell.culls = Culls::outside_frustum;
   const CellSummary cell = only_cell(judged);
+  EXPECT_DOUBLE_EQ(cell.metric("excused_px"), 4.0);
+  EXPECT_DOUBLE_EQ(cell.metric("disputed_px"), 21.0) << "the floor, not what was lost";
   EXPECT_TRUE(cell.judged);
   EXPECT_TRUE(cell.drawn);
   EXPECT_EQ(cell.pixels, 2000U);
@@ -157,7 +162,7 @@ TEST(Summary, AccuracyAddsUpOverTheFrames) {
   EXPECT_DOUBLE_EQ(cell.kept_objects, 5.0);
   EXPECT_DOUBLE_EQ(cell.counters.at("plane_tests"), 8.0);
   EXPECT_DOUBLE_EQ(cell.metric("false_px"), 7.0);
-  EXPECT_DOUBLE_EQ(cell.metric("flicker"), 3.0);
+  EXPECT_DOUBLE_EQ(cell.metric("flicker"), 6.0) << "one change from frame to frame";
   EXPECT_DOUBLE_EQ(cell.metric("pop"), 70.0);
   EXPECT_DOUBLE_EQ(cell.metric("latency"), 3.0);
 }
@@ -167,16 +172,49 @@ TEST(Summary, RecallIsOfWhatAPerfectMethodOfTheKindWouldCull) {
   verdicts.frames = {make_verdict(), make_verdict()};
   verdicts.outside = {400, 100};
   verdicts.back_facing = {500, 50};
-  const auto recall = [&](const std::string& chain) {
-    JudgedCell judged = make_cell(chain, {});
+  const auto recall = [&](Culls culls) {
+    JudgedCell judged = make_cell("any.name", {});
     judged.verdicts = verdicts;
+    judged.cell.culls = culls;
     return only_cell(judged).recall;
   };
-  EXPECT_DOUBLE_EQ(recall("frustum.flat[test=box]"), 0.25);
-  EXPECT_DOUBLE_EQ(recall("backface.polygon > backface.polygon"), 0.1);
-  const double of_hidden = 650.0 / 900.0;
-  EXPECT_DOUBLE_EQ(recall("occlusion.stop_and_wait"), of_hidden);
-  EXPECT_DOUBLE_EQ(recall("frustum.flat > backface.polygon"), of_hidden);
+  EXPECT_DOUBLE_EQ(recall(Culls::outside_frustum), 0.25);
+  EXPECT_DOUBLE_EQ(recall(Culls::back_faces), 0.1);
+  EXPECT_DOUBLE_EQ(recall(Culls::hidden), 650.0 / 900.0);
+}
+
+TEST(Summary, OneFrameCannotFlicker) {
+  JudgedCell judged = make_cell(frustum, {});
+  CellVerdicts verdicts;
+  verdicts.frames = {make_verdict()};
+  judged.verdicts = verdicts;
+  EXPECT_DOUBLE_EQ(only_cell(judged).flicker, 0.0);
+}
+
+TEST(Summary, WhereNothingIsDrawnNothingIsComparedWithDrawing) {
+  JudgedCell none = make_cell("none", {{5.0, 5.0}});
+  JudgedCell judged = make_cell(frustum, {{2.0, 4.0}});
+  add_anchor(judged, "none", {{4.0, 8.0}});
+  add_anchor(judged, "oracle[level=object]", {{1.0, 1.0}});
+  none.cell.key.device = judged.cell.key.device = "none";
+  const std::vector<BlockSummary> blocks = summarise({none, judged});
+  EXPECT_FALSE(blocks.front().drawn);
+  for (const CellSummary& cell : blocks.front().cells) {
+    EXPECT_FALSE(cell.against_none.measured());
+    EXPECT_FALSE(cell.efficiency.measured());
+    EXPECT_TRUE(std::isnan(cell.modelled_frame_ms));
+    EXPECT_TRUE(cell.cull_us.measured());
+  }
+}
+
+TEST(Summary, FactsThatDifferBetweenCellsAreKept) {
+  JudgedCell first = make_cell(frustum, {});
+  JudgedCell second = make_cell("none", {});
+  first.cell.context["revision"] = "b";
+  second.cell.context["revision"] = "a";
+  const std::vector<BlockSummary> blocks = summarise({first, second});
+  EXPECT_EQ(blocks.front().mixed_context,
+            (std::map<std::string, std::vector<std::string>>{{"revision", {"a", "b"}}}));
 }
 
 TEST(Summary, WithoutVerdictsNothingIsJudged) {

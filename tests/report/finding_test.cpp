@@ -57,6 +57,39 @@ TEST(Finding, OnlyConservativeMethodsMustKeepWhatLiesBetweenThePixels) {
   EXPECT_TRUE(is_free_of_errors(cell));
 }
 
+TEST(Finding, LostObjectsAreErrorsUnlessOnlyPixelsArePromised) {
+  CellSummary cell = fabricated_cell("same", 0.5, 0, 3.0);
+  cell.false_objects = 1;
+  for (const Guarantee guarantee :
+       {Guarantee::conservative, Guarantee::approximate, Guarantee::erroneous}) {
+    cell.guarantee = guarantee;
+    EXPECT_FALSE(is_free_of_errors(cell)) << to_string(guarantee);
+  }
+  cell.guarantee = Guarantee::image_exact;
+  EXPECT_TRUE(is_free_of_errors(cell));
+}
+
+TEST(Finding, AnOracleThatErrsIsNotNamed) {
+  BlockSummary block = fabricated_block("made_up");
+  block.cells[3].image_px = 1;
+  EXPECT_EQ(find(block).oracle->culler, "oracle");
+  block.cells[2].false_px = 1;
+  EXPECT_EQ(find(block).oracle, nullptr);
+}
+
+TEST(Finding, WhereNothingIsDrawnTheLeastLeftOverCounts) {
+  BlockSummary block = fabricated_block("made_up");
+  block.drawn = false;
+  block.cells.push_back(fabricated_cell("loose", 0.1, 0, 3.0));
+  block.cells.push_back(fabricated_cell("tight", 0.5, 0, 2.0));
+  block.cells.push_back(fabricated_cell("wrong", 0.5, 1, 1.0));
+  const Finding finding = find(block);
+  EXPECT_EQ(finding.kind, FindingKind::not_drawn);
+  EXPECT_EQ(finding.best->culler, "tight");
+  EXPECT_EQ(finding.erring->culler, "wrong");
+  EXPECT_EQ(finding.oracle, nullptr);
+}
+
 TEST(Finding, WhereAllMethodsErrNoneIsRecommended) {
   BlockSummary block = fabricated_block("made_up");
   block.cells.push_back(fabricated_cell("wrong", 0.4, 1, 0.0));

@@ -18,6 +18,8 @@ TEST(Format, NumbersHaveThreeSignificantDigits) {
   EXPECT_EQ(format_number(4.2), "4.20");
   EXPECT_EQ(format_number(0.01234), "0.0123");
   EXPECT_EQ(format_number(1234.5), "1,234");
+  EXPECT_EQ(format_rounded(12345.6), "12,300");
+  EXPECT_EQ(format_rounded(4.2), "4.20");
   EXPECT_EQ(format_number(0.0), "0");
   EXPECT_EQ(format_number(0.000417), "0.0004");
   EXPECT_EQ(format_number(0.00001), "< 0.0001");

@@ -102,6 +102,25 @@ TEST_F(Report, BothFilesAreWrittenAndSayWhatTheInputSays) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out"), {}), 2);
 }
 
+TEST_F(Report, SaysWhereNothingWasDrawnAndWhereBuildsDiffer) {
+  ReportInput input = fabricated_input();
+  BlockSummary& block = input.blocks[0];
+  block.drawn = false;
+  block.mixed_context["revision"] = {"aaa", "bbb"};
+  for (CellSummary& cell : block.cells) {
+    cell.drawn = false;
+    cell.image_px = 0;
+    cell.against_none = cell.efficiency = Estimate::none();
+  }
+  write_report(input, templates, folder_);
+  const std::string words = words_of(read(folder_ / "index.html"));
+  EXPECT_NE(words.find("On made_up_scene, nothing was drawn, so there is no saving to speak of; "
+                       "without errors, frustum.flat leaves the least over: 4.30"),
+            std::string::npos);
+  EXPECT_NE(words.find("Revision: aaa; bbb (mixed within made_up_scene)"), std::string::npos);
+  EXPECT_EQ(words.find("saves 71 %"), std::string::npos);
+}
+
 TEST_F(Report, ThePageRefersToNothingOutside) {
   write_report(fabricated_input(), templates, folder_);
   const std::string html = read(folder_ / "index.html");
