@@ -4,6 +4,7 @@
 #include <exception>
 #include <functional>
 #include <iostream>
+#include <stdexcept>
 
 #include "algorithms/all_cullers.h"
 #include "common/scene/error.h"
@@ -96,17 +97,25 @@ class CommandLine {
       return vislab::run(lab_, run_);
     });
     sub->add_option("matrix", run_.matrices, "names or files");
-    sub->add_option("--culler", run_.culler, "a culler or a chain: 'a[x=1] > b'");
-    sub->add_option("--scene", run_.scene, "name, description, mesh or Quake III world");
+    CLI::Option* const culler =
+        sub->add_option("--culler", run_.culler, "a culler or a chain: 'a[x=1] > b'");
+    sub->add_option("--scene", run_.scene, "name, description, mesh or Quake III world")
+        ->needs(culler);
     sub->add_option("--path", run_.path,
-                    "name or file of a camera path; fitted to the scene if not given");
-    sub->add_option("--resolution", run_.resolution, "with --culler")->capture_default_str();
+                    "name or file of a camera path; fitted to the scene if not given")
+        ->needs(culler);
+    sub->add_option("--resolution", run_.resolution, "with --culler")
+        ->needs(culler)
+        ->capture_default_str();
     sub->add_option("--frames", run_.frames, "with --culler; 0 = as many as the path has")
+        ->needs(culler)
         ->check(CLI::Range(0, 100000));
     sub->add_option("--rounds", run_.rounds, "with --culler")
+        ->needs(culler)
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     sub->add_option("--draw", run_.draw, "with --culler: osmesa or none")
+        ->needs(culler)
         ->check(CLI::IsMember({"osmesa", "none"}))
         ->capture_default_str();
     sub->add_option("--threads", run_.threads, "0 = as the matrix says")
@@ -174,7 +183,9 @@ class CommandLine {
 int main(int argc, char** argv) {
   try {
     CommandLine command_line;
-    return command_line.run(argc, argv);
+    const int code = command_line.run(argc, argv);
+    if (!std::cout.flush()) throw std::runtime_error("the output could not be written");
+    return code;
   } catch (const InputError& error) {
     std::cerr << "vislab: " << error.what() << '\n';
     return 2;

@@ -24,7 +24,8 @@ void refuse_unknown_keys(const toml::table& table, const std::vector<std::string
   for (const auto& [key, node] : table) {
     const std::string name(key.str());
     if (std::ranges::find(known, name) == known.end()) {
-      throw unknown_name(place(file, node) + ": key of " + what, name, known);
+      throw InputError(place(file, node) + ": " +
+                       unknown_name("key of " + what, name, known).what());
     }
   }
 }
@@ -185,7 +186,8 @@ Description read_description(const fs::path& path, const fs::path& folder, int d
   }
   if (auto draw = value_of<std::string>(root, "draw", "a text", file)) {
     if (*draw != "osmesa" && *draw != "none") {
-      throw unknown_name(place(file, *root.get("draw")) + ": draw", *draw, {"osmesa", "none"});
+      throw InputError(place(file, *root.get("draw")) + ": " +
+                       unknown_name("value of draw", *draw, {"osmesa", "none"}).what());
     }
     description.draw = *draw;
   }

@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int format_version = 1;
+constexpr int format_version = 2;
 
 /// The value of an enumeration from its name.
 template <typename Enum, std::size_t n>
@@ -28,6 +28,7 @@ constexpr std::array guarantees{Guarantee::conservative, Guarantee::image_exact,
                                 Guarantee::approximate, Guarantee::erroneous};
 constexpr std::array repeatabilities{Repeatability::stateless, Repeatability::path,
                                      Repeatability::timing};
+constexpr std::array kinds{Culls::back_faces, Culls::outside_frustum, Culls::hidden};
 constexpr std::array granularities{Granularity::object, Granularity::triangle};
 
 json key_to_json(const CellKey& key) {
@@ -67,6 +68,12 @@ std::string to_string(ResultCell::Status status) {
       return "failed";
   }
   return "";
+}
+
+std::string answer_hash(const ResultCell& cell) {
+  std::string text;
+  for (const CellFrame& frame : cell.frames) text += frame.set + " " + frame.truth + "\n";
+  return hash_text(text);
 }
 
 std::string to_json(const ResultCell& cell) {
@@ -110,6 +117,7 @@ std::string to_json(const ResultCell& cell) {
                   {"guarantee", to_string(cell.guarantee)},
                   {"repeatability", to_string(cell.repeatability)},
                   {"granularity", to_string(cell.granularity)},
+                  {"culls", to_string(cell.culls)},
                   {"asks_device", cell.asks_device},
                   {"build_ms", cell.build_ms},
                   {"bytes", cell.bytes},
@@ -117,15 +125,14 @@ std::string to_json(const ResultCell& cell) {
                   {"rounds", rounds},
                   {"anchors", anchors},
                   {"context", cell.context}};
-  return j.dump() + "\n";
+  // Names of files need not be UTF-8: what is not is replaced.
+  return j.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
-ResultCell parse_cell(const std::string& text, const std::string& where) {
+std::optional<ResultCell> parse_cell(const std::string& text, const std::string& where) {
   const json j = parse_json(text, where);
-  return read_json(where, [&] {
-    if (j.at("format") != format_version) {
-      throw InputError(where + ": results of another format; delete the file and run again");
-    }
+  return read_json(where, [&]() -> std::optional<ResultCell> {
+    if (j.at("format") != format_version) return std::nullopt;
     ResultCell cell;
     cell.key = key_from_json(j.at("key"));
     if (j.at("id") != cell.key.id()) {
@@ -145,6 +152,7 @@ ResultCell parse_cell(const std::string& text, const std::string& where) {
     cell.repeatability =
         from_name(j.at("repeatability").get<std::string>(), repeatabilities, where);
     cell.granularity = from_name(j.at("granularity").get<std::string>(), granularities, where);
+    cell.culls = from_name(j.at("culls").get<std::string>(), kinds, where);
     cell.asks_device = j.at("asks_device");
     cell.build_ms = j.at("build_ms");
     cell.bytes = j.at("bytes");

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,7 @@ struct ResultCell {
   Guarantee guarantee = Guarantee::conservative;
   Repeatability repeatability = Repeatability::stateless;
   Granularity granularity = Granularity::object;
+  Culls culls = Culls::hidden;
   bool asks_device = false;  // waits for answers of the device while it culls
 
   double build_ms = 0.0;
@@ -78,8 +80,12 @@ struct ResultCell {
 
 std::string to_string(ResultCell::Status status);
 
-/// JSON text, and back. parse_cell throws InputError that names `where` and what is wrong.
+/// Hash of what the judge has to judge: the sets and truths of all frames.
+std::string answer_hash(const ResultCell& cell);
+
+/// JSON text, and back. parse_cell gives nothing for text of another version of the format, and
+/// throws InputError that names `where` and what is wrong for anything else that is no cell.
 std::string to_json(const ResultCell& cell);
-ResultCell parse_cell(const std::string& json, const std::string& where);
+std::optional<ResultCell> parse_cell(const std::string& json, const std::string& where);
 
 }  // namespace vislab

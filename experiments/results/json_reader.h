@@ -24,7 +24,11 @@ auto read_json(const std::string& where, Function&& read) {
   try {
     return read();
   } catch (const nlohmann::json::exception& error) {
-    throw InputError(where + ": " + error.what() + "; delete the file and run again");
+    // "[json.exception.out_of_range.403] key 'x' not found": the library's own number says nothing.
+    const std::string text = error.what();
+    const auto after = text.find("] ");
+    throw InputError(where + ": " + (after == std::string::npos ? text : text.substr(after + 2)) +
+                     "; delete the file and run again");
   }
 }
 

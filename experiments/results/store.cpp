@@ -154,7 +154,9 @@ std::vector<ResultCell> ResultStore::load_all() const {
   }
   std::ranges::sort(files);
   std::vector<ResultCell> cells;
-  for (const fs::path& file : files) cells.push_back(parse_cell(read_file(file), file.string()));
+  for (const fs::path& file : files) {
+    if (auto cell = parse_cell(read_file(file), file.string())) cells.push_back(std::move(*cell));
+  }
   return cells;
 }
 
@@ -173,7 +175,8 @@ void ResultStore::save_set(const std::string& hash, const VisibleSet& set) const
 
 VisibleSet ResultStore::load_set(const std::string& hash) const {
   const fs::path file = folder_ / "sets" / (hash + ".set");
-  const InputError corrupt(file.string() + ": not a visible set; delete the results and run again");
+  const InputError corrupt(file.string() +
+                           ": not a visible set; delete it and run again with --force");
   const std::optional<std::string> bytes = uncompressed(read_file(file));
   if (!bytes) throw corrupt;
   std::vector<VisibleSet::Run> runs;
@@ -190,15 +193,16 @@ VisibleSet ResultStore::load_set(const std::string& hash) const {
   return set;
 }
 
-std::optional<CellVerdicts> ResultStore::load_verdicts(const std::string& id,
+std::optional<CellVerdicts> ResultStore::load_verdicts(const ResultCell& cell,
                                                        const std::string& judge) const {
-  const fs::path file = folder_ / "verdicts" / (id + ".json");
+  const fs::path file = folder_ / "verdicts" / (cell.key.id() + ".json");
   if (!fs::exists(file)) return std::nullopt;
   try {
     const json j = json::parse(read_file(file));
     CellVerdicts verdicts;
     verdicts.judge = j.at("judge");
-    if (verdicts.judge != judge) return std::nullopt;
+    verdicts.answers = j.at("answers");
+    if (verdicts.judge != judge || verdicts.answers != answer_hash(cell)) return std::nullopt;
     for (const json& frame : j.at("frames")) verdicts.frames.push_back(verdict_from(frame));
     for (const json& image : j.at("images")) {
       verdicts.images.push_back({image.at("image_px"), image.at("disputed_image_px")});
@@ -223,6 +227,7 @@ void ResultStore::save_verdicts(const std::string& id, const CellVerdicts& verdi
         {{"image_px", image.image_px}, {"disputed_image_px", image.disputed_image_px}});
   }
   const json j = {{"judge", verdicts.judge},
+                  {"answers", verdicts.answers},
                   {"frames", frames},
                   {"images", images},
                   {"back_facing", to_json(verdicts.back_facing)},

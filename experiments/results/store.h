@@ -21,7 +21,8 @@ namespace vislab {
 
 /// The judge's verdicts on all frames of a cell, and the error floor of those frames.
 struct CellVerdicts {
-  std::string judge;  // hash of the judge's sources: verdicts of another judge are made again
+  std::string judge;    // hash of the judge's sources: verdicts of another judge are made again
+  std::string answers;  // answer_hash of the cell: verdicts on other answers are made again
   std::vector<Verdict> frames;
   std::vector<ImageVerdict> images;  // empty if nothing was drawn
   CulledOf back_facing, outside;     // sums over frames
@@ -40,10 +41,12 @@ class ResultStore {
   const std::filesystem::path& folder() const { return folder_; }
   std::filesystem::path truth_folder() const { return folder_ / "truth"; }
 
-  /// Empty if there is none. Throws InputError that names the file if it is corrupt.
+  /// Empty if there is none, or only one of another version of the format. Throws InputError that
+  /// names the file if it is corrupt.
   std::optional<ResultCell> load_cell(const std::string& id) const;
   void save_cell(const ResultCell& cell) const;
-  /// All cells, by id. Throws InputError that names the first corrupt file.
+  /// All cells of this version of the format, by id. Throws InputError that names the first corrupt
+  /// file.
   std::vector<ResultCell> load_all() const;
 
   /// Writes the set unless it is there.
@@ -51,8 +54,9 @@ class ResultStore {
   /// Throws InputError if it is missing or corrupt.
   VisibleSet load_set(const std::string& hash) const;
 
-  /// Empty if there are none, they cannot be read, or another judge made them.
-  std::optional<CellVerdicts> load_verdicts(const std::string& id, const std::string& judge) const;
+  /// Empty if there are none, they cannot be read, another judge made them, or the cell has other
+  /// answers by now.
+  std::optional<CellVerdicts> load_verdicts(const ResultCell& cell, const std::string& judge) const;
   void save_verdicts(const std::string& id, const CellVerdicts& verdicts) const;
 
  private:

@@ -27,11 +27,11 @@ void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene
   };
   std::vector<Pending> pending;
   for (const ResultCell* cell : cells) {
-    const std::string id = cell->key.id();
     if (cell->frames.size() == path.frames.size() &&
-        !store.load_verdicts(id, judge_source_hash())) {
+        !store.load_verdicts(*cell, judge_source_hash())) {
       pending.push_back({cell, {}, StabilityJudge(scene)});
       pending.back().verdicts.judge = judge_source_hash();
+      pending.back().verdicts.answers = answer_hash(*cell);
     }
   }
   if (pending.empty()) return;

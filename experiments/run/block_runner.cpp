@@ -1,11 +1,12 @@
 #include "experiments/run/block_runner.h"
 
-#include <unistd.h>
-
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <new>
+#include <optional>
+#include <stdexcept>
 
 #include "common/geometry/random.h"
 #include "common/judge/path_truth.h"
@@ -13,7 +14,6 @@
 #include "common/scene/error.h"
 #include "experiments/context/context.h"
 #include "experiments/context/sources.h"
-#include "experiments/results/hash.h"
 #include "experiments/run/block_judge.h"
 #include "experiments/run/path_run.h"
 
@@ -28,16 +28,24 @@ constexpr std::size_t most_frames_of_larger_scenes = 8;
 /// A cell of the block while it is being measured.
 struct Runner {
   ResultCell cell;
-  std::unique_ptr<ICuller> culler;  // null until it is needed
+  std::unique_ptr<ICuller> culler;  // null until it is needed, and after a failure
   bool anchor = false;
-  bool wanted = false;  // lacks rounds
-  int missing_rounds = 0;
+  int missing_rounds = 0;  // > 0: the cell is wanted
+  int new_rounds = 0;
+  std::optional<PathRun> pass;  // of the round under way
 };
 
-/// A fresh name for this run of the block: rounds pair within it.
-std::string new_session() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch().count();
-  return hash_text(std::to_string(now) + "/" + std::to_string(::getpid())).substr(0, 12);
+bool has_failed(const Runner& runner) { return runner.cell.status == ResultCell::Status::failed; }
+
+/// Rounds of different machines or builds do not belong into one cell.
+bool same_circumstances(const std::map<std::string, std::string>& a,
+                        const std::map<std::string, std::string>& b) {
+  const auto fact = [](const auto& context, const char* name) {
+    const auto found = context.find(name);
+    return found == context.end() ? std::string() : found->second;
+  };
+  return std::ranges::all_of(std::array{"machine", "compiler", "compiler_flags", "build_type"},
+                             [&](const char* name) { return fact(a, name) == fact(b, name); });
 }
 
 class BlockRun {
@@ -55,20 +63,25 @@ class BlockRun {
   BlockOutcome run() {
     load();
     collect_cells();
-    if (std::ranges::any_of(runners_, &Runner::wanted)) {
+    if (std::ranges::any_of(runners_, [](const Runner& r) { return r.missing_rounds > 0; })) {
       trace_truth();
       build_cullers();
       time_rounds();
     }
     judge();
     for (const Runner& runner : runners_) {
-      outcome_.failed += runner.cell.status == ResultCell::Status::failed ? 1 : 0;
+      outcome_.cells.push_back(runner.cell.key.id());
+      outcome_.failed += has_failed(runner) ? 1 : 0;
+      outcome_.measured += runner.new_rounds > 0 ? 1 : 0;
+      const bool was_done = runner.new_rounds == 0 && runner.missing_rounds == 0;
+      outcome_.present += was_done && !has_failed(runner) ? 1 : 0;
     }
     return outcome_;
   }
 
  private:
   void load() {
+    context_ = run_context(settings_.repository);
     LoadedScene loaded = load_scene(block_.scene, settings_.folders);
     scene_description_ = loaded.description;
     scene_ = std::make_unique<Scene>(std::move(loaded.scene));
@@ -97,18 +110,41 @@ class BlockRun {
         continue;
       }
       runner.cell = fresh_cell(culler, control ? short_name + " (again)" : short_name);
-      if (!settings_.force) {
-        if (auto known = store_.load_cell(runner.cell.key.id())) {
-          if (known->status != ResultCell::Status::failed || !settings_.retry_failed) {
-            runner.cell = std::move(*known);
-          }
-        }
-      }
-      const int rounds = static_cast<int>(runner.cell.rounds.size());
-      runner.wanted = runner.cell.status != ResultCell::Status::failed && rounds < block_.rounds;
-      runner.missing_rounds = block_.rounds - rounds;
-      (runner.wanted ? outcome_.measured : outcome_.present) += 1;
+      take_over_stored(runner);
       runners_.push_back(std::move(runner));
+    }
+  }
+
+  /// Goes on with what is stored of the cell, unless it is to be measured anew.
+  void take_over_stored(Runner& runner) {
+    const std::string id = runner.cell.key.id();
+    const bool given_up = settings_.given_up.contains(id);
+    std::optional<ResultCell> stored = store_.load_cell(id);
+    const bool failed = stored && stored->status == ResultCell::Status::failed;
+    const bool by_this_run = stored && !stored->rounds.empty() &&
+                             stored->rounds.back().session.starts_with(settings_.run);
+    if (!given_up && ((settings_.force && !by_this_run) || (settings_.retry_failed && failed))) {
+      stored.reset();
+    }
+    if (stored && !failed && !same_circumstances(stored->context, context_)) {
+      // A whole cell of another machine is a result, told apart by its context; of another build,
+      // or with rounds missing, it is measured anew.
+      const bool whole = static_cast<int>(stored->rounds.size()) >= block_.rounds;
+      if (!whole || stored->context["machine"] == context_["machine"]) stored.reset();
+    }
+    if (stored) {
+      const std::string name = runner.cell.culler;
+      const std::string scene_name = runner.cell.scene;
+      runner.cell = std::move(*stored);
+      runner.cell.culler = name;
+      runner.cell.scene = scene_name;
+    }
+    if (has_failed(runner) || given_up) return;
+    runner.missing_rounds =
+        std::max(0, block_.rounds - static_cast<int>(runner.cell.rounds.size()));
+    if (runner.missing_rounds == 0 && runner.cell.status == ResultCell::Status::running) {
+      runner.cell.status = ResultCell::Status::done;  // fewer rounds are wanted than before
+      store_.save_cell(runner.cell);
     }
   }
 
@@ -174,12 +210,14 @@ class BlockRun {
   }
 
   void fail(Runner& runner, const std::string& reason) {
+    runner.culler = nullptr;
+    progress_.line(block_.title() + ": " + runner.cell.culler + " failed: " + reason);
+    // An anchor that only ran beside others keeps the result that it has.
+    if (runner.missing_rounds == 0) return;
+    runner.missing_rounds = 0;
     runner.cell.status = ResultCell::Status::failed;
     runner.cell.reason = reason;
-    runner.wanted = false;
-    runner.culler = nullptr;
     store_.save_cell(runner.cell);
-    progress_.line(block_.title() + ": " + runner.cell.culler + " failed: " + reason);
   }
 
   void build_cullers() {
@@ -190,27 +228,28 @@ class BlockRun {
       device_->load(*scene_);
       timed_device_ = std::make_unique<TimedDevice>(*device_);
     }
-    std::map<std::string, std::string> context = run_context(settings_.repository);
-    context["device"] = device_ ? device_->description() : "none";
+    context_["device"] = device_ ? device_->description() : "none";
     BuildContext build_context;
     build_context.cullers = &registry_;
     build_context.truth = truth_.get();
     build_context.device = timed_device_.get();
     build_context.threads = block_.threads;
     for (Runner& runner : runners_) {
-      if (!runner.wanted && !runner.anchor) continue;
-      if (runner.cell.status == ResultCell::Status::failed) continue;
+      const bool wanted = runner.missing_rounds > 0;
+      if ((!wanted && !runner.anchor) || has_failed(runner)) continue;
+      if (settings_.given_up.contains(runner.cell.key.id())) continue;
       runner.culler = registry_.make(runner.cell.key.chain);
-      if (runner.wanted) {
+      if (wanted) {
         const CullerInfo& info = runner.culler->info();
         runner.cell.guarantee = info.guarantee;
         runner.cell.repeatability = info.repeatability;
         runner.cell.granularity = info.granularity;
+        runner.cell.culls = info.culls;
         runner.cell.asks_device = info.needs_device;
-        runner.cell.context = context;
-        // On record before it starts: if the process dies, the failure has a place to be written
-        // to.
-        store_.save_cell(runner.cell);
+        runner.cell.context = context_;
+        // On record before it starts, so that a failure has a place to be written to. What was
+        // there before stays until there is something better.
+        if (!store_.load_cell(runner.cell.key.id())) store_.save_cell(runner.cell);
       }
       guarded(runner, [&] {
         const auto start = std::chrono::steady_clock::now();
@@ -224,91 +263,89 @@ class BlockRun {
   }
 
   void time_rounds() {
-    const std::string session = new_session();
-    const std::size_t frames = path_.frames.size();
+    // Rounds pair within a session; a block that is tried again after a crash begins another.
+    const std::string session = settings_.run + "." + std::to_string(settings_.given_up.size());
     SceneState state(*scene_);
+    const auto pass = [&](Runner& runner) {
+      return run_path(*runner.culler, *scene_, path_, block_.viewport, block_.seed, state,
+                      timed_device_.get());
+    };
     int rounds = 0;
-    for (const Runner& runner : runners_) {
-      if (runner.wanted) rounds = std::max(rounds, runner.missing_rounds);
-    }
+    for (const Runner& runner : runners_) rounds = std::max(rounds, runner.missing_rounds);
     // One pass that is not kept: caches, page tables and the driver's buffers are warm afterwards.
-    if (Runner& first = runners_.front(); first.culler) {
-      guarded(first, [&] {
-        run_path(*first.culler, *scene_, path_, block_.viewport, block_.seed, state,
-                 timed_device_.get());
-      });
-    }
+    if (Runner& first = runners_.front(); first.culler) guarded(first, [&] { pass(first); });
+
     Random random(block_.seed);
     for (int round = 0; round < rounds && stop_ == 0; ++round) {
       std::vector<Runner*> order;
       for (Runner& runner : runners_) {
-        if (runner.culler && (runner.anchor || runner.missing_rounds > round)) {
-          order.push_back(&runner);
-        }
+        if (runner.culler && (runner.anchor || runner.missing_rounds > 0)) order.push_back(&runner);
       }
       for (std::size_t i = order.size(); i > 1; --i) {
         std::swap(order[i - 1], order[random.below(i)]);
       }
-      std::map<std::string, AnchorRound> anchor_rounds;
-      std::size_t done = 0;
-      for (Runner* runner : order) {
-        if (stop_ != 0) break;
-        progress_.step(
-            block_.title() + ": round " + std::to_string(round + 1) + " of " +
-                std::to_string(rounds) + ", " + runner->cell.culler,
-            0.2 + 0.7 * (round + static_cast<double>(done) / static_cast<double>(order.size())) /
-                      rounds);
-        ++done;
-        guarded(*runner, [&] {
-          PathRun run = run_path(*runner->culler, *scene_, path_, block_.viewport, block_.seed,
-                                 state, timed_device_.get());
-          run.round.session = session;
-          run.round.number = round;
-          if (runner->anchor && runner->cell.key.replicate == 0) {
-            anchor_rounds[runner->cell.key.chain] = {session, round, run.round.frame_ms};
-          }
-          if (runner->missing_rounds > round) keep(*runner, std::move(run), frames);
+      for (std::size_t i = 0; i < order.size() && stop_ == 0; ++i) {
+        Runner& runner = *order[i];
+        const double done = round + static_cast<double>(i) / static_cast<double>(order.size());
+        progress_.step(block_.title() + ": round " + std::to_string(round + 1) + " of " +
+                           std::to_string(rounds) + ", " + runner.cell.culler,
+                       0.2 + 0.7 * done / rounds);
+        guarded(runner, [&] {
+          runner.pass = pass(runner);
+          runner.pass->round.session = session;
+          runner.pass->round.number = round;
         });
       }
-      for (Runner* runner : order) {
-        if (runner->missing_rounds <= round) continue;
-        if (runner->cell.status == ResultCell::Status::failed) continue;
-        for (const auto& [chain, anchor] : anchor_rounds) {
-          runner->cell.anchors[chain].push_back(anchor);
-        }
-        store_.save_cell(runner->cell);
-      }
+      if (stop_ == 0) keep_round(order);
+      for (Runner* runner : order) runner->pass.reset();
     }
     outcome_.stopped = stop_ != 0;
   }
 
-  /// Adds a pass to its cell and saves it; a different answer than before makes the cell fail,
-  /// unless the culler says that its answers depend on time.
-  void keep(Runner& runner, PathRun run, std::size_t frames) {
-    ResultCell& cell = runner.cell;
-    for (std::size_t i = 0; i < frames; ++i) {
+  /// Adds the passes of a whole round to their cells, each with the round's anchors, and saves
+  /// them.
+  void keep_round(const std::vector<Runner*>& order) {
+    std::map<std::string, AnchorRound> anchors;
+    for (const Runner* runner : order) {
+      if (!runner->anchor || runner->cell.key.replicate > 0 || !runner->pass) continue;
+      const Round& round = runner->pass->round;
+      anchors[runner->cell.key.chain] = {round.session, round.number, round.frame_ms};
+    }
+    for (Runner* runner : order) {
+      if (!runner->pass || runner->missing_rounds == 0) continue;
+      guarded(*runner, [&] {
+        add_answers(runner->cell, *runner->pass);
+        for (const auto& [chain, anchor] : anchors) runner->cell.anchors[chain].push_back(anchor);
+        runner->cell.rounds.push_back(std::move(runner->pass->round));
+        ++runner->new_rounds;
+        if (--runner->missing_rounds == 0) runner->cell.status = ResultCell::Status::done;
+        store_.save_cell(runner->cell);
+      });
+    }
+  }
+
+  /// The first pass gives the answers; a later one that differs makes the cell fail, unless the
+  /// culler says that its answers depend on time.
+  void add_answers(ResultCell& cell, PathRun& run) {
+    for (std::size_t i = 0; i < run.frames.size(); ++i) {
       run.frames[i].truth = truth_keys_[i];
       if (!cell.frames.empty() && cell.repeatability != Repeatability::timing &&
-          cell.frames[i].set != run.frames[i].set) {
-        throw InputError("not repeatable as it declares (" +
-                         std::string(to_string(cell.repeatability)) + "): frame " +
-                         std::to_string(i) + " differs from an earlier round");
+          (cell.frames[i].set != run.frames[i].set ||
+           cell.frames[i].counters != run.frames[i].counters)) {
+        throw std::runtime_error("not repeatable as it declares (" +
+                                 std::string(to_string(cell.repeatability)) + "): frame " +
+                                 std::to_string(i) + " differs from an earlier round");
       }
       store_.save_set(run.frames[i].set, run.sets[i]);
     }
     if (cell.frames.empty()) cell.frames = std::move(run.frames);
-    cell.rounds.push_back(std::move(run.round));
-    if (static_cast<int>(cell.rounds.size()) >= block_.rounds) {
-      cell.status = ResultCell::Status::done;
-    }
-    store_.save_cell(cell);
   }
 
   void judge() {
     std::vector<const ResultCell*> judged;
     for (const Runner& runner : runners_) {
       if (runner.cell.frames.empty()) continue;
-      if (store_.load_verdicts(runner.cell.key.id(), judge_source_hash())) continue;
+      if (store_.load_verdicts(runner.cell, judge_source_hash())) continue;
       judged.push_back(&runner.cell);
     }
     if (judged.empty()) return;
@@ -328,6 +365,7 @@ class BlockRun {
   std::unique_ptr<Scene> scene_;
   std::string scene_description_;
   Path path_;
+  std::map<std::string, std::string> context_;
   TruthSettings truth_settings_;
   std::unique_ptr<RayCaster> caster_;
   std::unique_ptr<PathTruth> truth_;

@@ -4,7 +4,9 @@
 #include <csignal>
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "common/culler/registry.h"
 #include "common/scene/library.h"
@@ -17,15 +19,18 @@ struct RunSettings {
   DataFolders folders;
   std::filesystem::path repository;  // for the revision in the context
   std::filesystem::path results;
-  std::string filter;         // only chains (short or canonical) that contain it; "" = all
-  bool force = false;         // measure again what is done
-  bool retry_failed = false;  // try failed cells again
+  std::string run;                 // a name for this run that no other has
+  std::string filter;              // only chains (short or canonical) that contain it; "" = all
+  bool force = false;              // measure again what was not measured by this run
+  bool retry_failed = false;       // try failed cells again
+  std::set<std::string> given_up;  // ids of cells that this run does not try again
 };
 
 struct BlockOutcome {
-  int measured = 0;  // cells that got new rounds
-  int present = 0;   // cells that were done before
-  int failed = 0;    // failed now or before
+  std::vector<std::string> cells;  // ids of all cells of the block
+  int measured = 0;                // that got new rounds
+  int present = 0;                 // that were done before
+  int failed = 0;                  // that failed now or before
   bool stopped = false;
 };
 
@@ -36,9 +41,9 @@ struct CellWatch {
 };
 
 /// Cells that are done are left alone; the others get the rounds that are missing, interleaved with
-/// the block's anchors in shuffled order, and are saved after each pass. A cell that fails is
-/// stored with its reason. `stop` ends the run after the present pass. Throws InputError for
-/// scenes, paths and results that are wrong.
+/// the block's anchors in shuffled order. They are saved after each whole round: a round counts
+/// only together with its anchors. A cell that fails is stored with its reason. `stop` ends the run
+/// after the present pass. Throws InputError for scenes, paths and results that are wrong.
 BlockOutcome run_block(const Block& block, const RunSettings& settings, const Registry& registry,
                        Progress& progress, const CellWatch& watch,
                        const volatile std::sig_atomic_t& stop);

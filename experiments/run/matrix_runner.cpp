@@ -1,6 +1,9 @@
 #include "experiments/run/matrix_runner.h"
 
+#include <fcntl.h>
 #include <poll.h>
+#include <sys/file.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,33 +16,71 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "common/scene/error.h"
+#include "experiments/results/hash.h"
 #include "experiments/results/store.h"
 
 namespace vislab {
 namespace {
 
+/// How often this process was asked to stop.
 volatile std::sig_atomic_t stop_requested = 0;
 
-void request_stop(int) { stop_requested = 1; }
+void request_stop(int) { stop_requested = stop_requested + 1; }
 
-/// Ctrl-C sets a flag while an object of this class lives.
-class StopOnInterrupt {
+/// Ctrl-C and SIGTERM count up stop_requested while an object of this class lives.
+class StopOnSignal {
  public:
-  StopOnInterrupt() {
+  StopOnSignal() {
     stop_requested = 0;
     struct sigaction action {};
     action.sa_handler = request_stop;
-    // The second Ctrl-C ends the process at once, as always.
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
-    ::sigaction(SIGINT, &action, &before_);
+    ::sigaction(SIGINT, &action, &interrupt_before_);
+    ::sigaction(SIGTERM, &action, &terminate_before_);
   }
-  ~StopOnInterrupt() { ::sigaction(SIGINT, &before_, nullptr); }
-  StopOnInterrupt(const StopOnInterrupt&) = delete;
-  StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
+  ~StopOnSignal() {
+    ::sigaction(SIGINT, &interrupt_before_, nullptr);
+    ::sigaction(SIGTERM, &terminate_before_, nullptr);
+  }
+  StopOnSignal(const StopOnSignal&) = delete;
+  StopOnSignal& operator=(const StopOnSignal&) = delete;
 
  private:
-  struct sigaction before_ {};
+  struct sigaction interrupt_before_ {};
+  struct sigaction terminate_before_ {};
 };
+
+/// One run at a time writes into a results folder; two would measure each other's load.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::filesystem::path& folder)
+      : file_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (file_ < 0 || ::flock(file_, LOCK_EX | LOCK_NB) != 0) {
+      if (file_ >= 0) ::close(file_);
+      throw InputError("another run writes into " + folder.string() +
+                       "; wait for it, or name another folder with --results");
+    }
+  }
+  ~FolderLock() { ::close(file_); }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int file_;
+};
+
+/// What killed runs left half-written. Only under the lock.
+void remove_temporary_files(const std::filesystem::path& results) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(results)) {
+    if (entry.path().extension() == ".tmp") std::filesystem::remove(entry.path());
+  }
+}
+
+/// A name that no other run has.
+std::string new_run() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch().count();
+  return hash_text(std::to_string(now) + "/" + std::to_string(::getpid())).substr(0, 12);
+}
 
 /// Writes one message line of the child to its parent.
 void tell(int pipe, const std::string& message) {
@@ -53,7 +94,8 @@ void tell(int pipe, const std::string& message) {
 }
 
 /// The child: runs the block and tells the parent what it does. Messages:
-///   cell ID SECONDS | idle | outcome MEASURED PRESENT FAILED STOPPED | error TEXT
+///   cell ID SECONDS | idle | member ID | outcome MEASURED PRESENT FAILED STOPPED | error TEXT |
+///   failure TEXT
 int run_child(int pipe, const Block& block, const RunSettings& settings, const Registry& registry,
               Progress& progress) {
   const CellWatch watch{[&](const std::string& id, double seconds) {
@@ -64,16 +106,18 @@ int run_child(int pipe, const Block& block, const RunSettings& settings, const R
     const BlockOutcome outcome =
         run_block(block, settings, registry, progress, watch, stop_requested);
     progress.finish();
+    for (const std::string& id : outcome.cells) tell(pipe, "member " + id);
     tell(pipe, "outcome " + std::to_string(outcome.measured) + " " +
                    std::to_string(outcome.present) + " " + std::to_string(outcome.failed) + " " +
                    std::to_string(outcome.stopped ? 1 : 0));
     return 0;
   } catch (const std::exception& error) {
     progress.finish();
+    const bool wrong_input = dynamic_cast<const InputError*>(&error) != nullptr;
     std::string text = error.what();
     std::ranges::replace(text, '\n', ' ');
-    tell(pipe, "error " + text);
-    return 2;
+    tell(pipe, (wrong_input ? "error " : "failure ") + text);
+    return wrong_input ? 2 : 1;
   }
 }
 
@@ -82,7 +126,9 @@ struct Child {
   std::string cell;  // that runs now; "" between cells
   std::chrono::steady_clock::time_point deadline;
   std::optional<BlockOutcome> outcome;
-  std::string error;
+  std::vector<std::string> members;
+  std::string error;    // wrong input
+  std::string failure;  // anything else that ended the block
   bool timed_out = false;
   double timeout_s = 0.0;
   int status = 0;  // of waitpid
@@ -98,12 +144,16 @@ void take_message(const std::string& line, Child& child) {
                      std::chrono::milliseconds(static_cast<long long>(child.timeout_s * 1e3));
   } else if (word == "idle") {
     child.cell.clear();
+  } else if (word == "member") {
+    in >> child.members.emplace_back();
   } else if (word == "outcome") {
     BlockOutcome outcome;
     in >> outcome.measured >> outcome.present >> outcome.failed >> outcome.stopped;
     child.outcome = outcome;
   } else if (word == "error") {
     child.error = line.substr(6);
+  } else if (word == "failure") {
+    child.failure = line.substr(8);
   }
 }
 
@@ -111,7 +161,13 @@ void take_message(const std::string& line, Child& child) {
 Child watch_child(pid_t pid, int pipe) {
   Child child;
   std::string buffer;
+  int passed_on = 0;
   for (;;) {
+    // The first wish to stop lets the present pass end, the second does not wait for it.
+    if (stop_requested > passed_on) {
+      passed_on = stop_requested;
+      ::kill(pid, passed_on == 1 ? SIGINT : SIGKILL);
+    }
     pollfd waiting{pipe, POLLIN, 0};
     const int ready = ::poll(&waiting, 1, 100);
     if (ready < 0 && errno != EINTR) break;
@@ -145,6 +201,7 @@ Child run_in_child(const Block& block, const RunSettings& settings, const Regist
   if (pid < 0) throw std::runtime_error(std::string("fork: ") + std::strerror(errno));
   if (pid == 0) {
     ::close(ends[0]);
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody is left to record a failure then
     const int code = run_child(ends[1], block, settings, registry, progress);
     std::fflush(nullptr);
     ::_exit(code);
@@ -155,25 +212,27 @@ Child run_in_child(const Block& block, const RunSettings& settings, const Regist
   return child;
 }
 
-/// Writes the reason of a dead child into the cell that it was at. False if there is no such cell.
-bool record_failure(const Child& child, const RunSettings& settings, std::string& reason) {
+std::string reason_of_death(const Child& child) {
   if (child.timed_out) {
     std::ostringstream text;
     text << "timed out after " << child.timeout_s << " s";
-    reason = text.str();
-  } else if (WIFSIGNALED(child.status)) {
-    reason = std::string("crashed: ") + ::strsignal(WTERMSIG(child.status));
-  } else {
-    reason = "ended without an answer";
+    return text.str();
   }
-  if (child.cell.empty()) return false;
-  const ResultStore store = ResultStore::open(settings.results);
-  std::optional<ResultCell> cell = store.load_cell(child.cell);
-  if (!cell) return false;
+  if (WIFSIGNALED(child.status)) {
+    return std::string("crashed: ") + ::strsignal(WTERMSIG(child.status));
+  }
+  return "ended without an answer";
+}
+
+/// Writes a failure into the cell that a dead child was at, unless the cell has a result already.
+void record_failure(const std::string& id, const std::string& reason,
+                    const std::filesystem::path& results) {
+  const ResultStore store = ResultStore::open(results);
+  std::optional<ResultCell> cell = store.load_cell(id);
+  if (!cell || cell->status == ResultCell::Status::done) return;
   cell->status = ResultCell::Status::failed;
   cell->reason = reason;
   store.save_cell(*cell);
-  return true;
 }
 
 }  // namespace
@@ -182,8 +241,12 @@ RunOutcome run_blocks(const std::vector<Block>& blocks, const RunOptions& option
                       const Registry& registry) {
   RunOutcome total;
   Progress progress(options.quiet);
-  const StopOnInterrupt interrupt;
+  const StopOnSignal signals;
   ResultStore::create(options.settings.results);  // wrong folders are told before any work
+  const FolderLock lock(options.settings.results);
+  remove_temporary_files(options.settings.results);
+  RunSettings settings = options.settings;
+  settings.run = new_run();
   std::vector<Block> mine;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (static_cast<int>(i) % options.shards == options.shard - 1) mine.push_back(blocks[i]);
@@ -191,40 +254,37 @@ RunOutcome run_blocks(const std::vector<Block>& blocks, const RunOptions& option
   for (std::size_t i = 0; i < mine.size() && stop_requested == 0; ++i) {
     progress.set_blocks(static_cast<int>(i), static_cast<int>(mine.size()));
     const Block& block = mine[i];
-    RunSettings settings = options.settings;
+    settings.given_up.clear();
     // A cell that brings the process down is marked as failed and left out of the next attempt.
     for (std::size_t attempt = 0; attempt <= block.cullers.size(); ++attempt) {
       const Child child = run_in_child(block, settings, registry, progress);
+      total.cells.insert(child.members.begin(), child.members.end());
       if (child.outcome) {
-        total.measured += child.outcome->measured;
-        total.present += child.outcome->present;
-        total.failed += child.outcome->failed;
-        total.stopped |= child.outcome->stopped;
-        progress.line("[" + std::to_string(i + 1) + "/" + std::to_string(mine.size()) + "] " +
-                      block.title() + ": " + std::to_string(child.outcome->measured) +
-                      " cells measured, " + std::to_string(child.outcome->present) + " were there" +
-                      (child.outcome->failed > 0
-                           ? ", " + std::to_string(child.outcome->failed) + " failed"
-                           : ""));
+        const BlockOutcome& outcome = *child.outcome;
+        total.measured += outcome.measured;
+        total.present += outcome.present;
+        total.failed += outcome.failed;
+        total.stopped |= outcome.stopped;
+        progress.line(
+            "[" + std::to_string(i + 1) + "/" + std::to_string(mine.size()) + "] " + block.title() +
+            ": " + std::to_string(outcome.measured) + " cells measured, " +
+            std::to_string(outcome.present) + " were there" +
+            (outcome.failed > 0 ? ", " + std::to_string(outcome.failed) + " failed" : ""));
         break;
       }
       if (!child.error.empty()) {
         total.errors.push_back(child.error);
         break;
       }
-      if (stop_requested != 0) {
-        total.stopped = true;
+      if (stop_requested != 0) break;
+      const std::string reason = child.failure.empty() ? reason_of_death(child) : child.failure;
+      if (child.cell.empty() || settings.given_up.contains(child.cell)) {
+        total.failures.push_back(block.title() + ": " + reason);
         break;
       }
-      std::string reason;
-      if (!record_failure(child, settings, reason)) {
-        total.errors.push_back(block.title() + ": the process of this block " + reason);
-        break;
-      }
+      record_failure(child.cell, reason, settings.results);
+      settings.given_up.insert(child.cell);
       progress.line(block.title() + ": a cell failed: " + reason);
-      // What was just written must not be thrown away by the next attempt.
-      settings.force = false;
-      settings.retry_failed = false;
     }
   }
   progress.finish();

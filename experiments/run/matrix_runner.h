@@ -1,6 +1,7 @@
 // Runs matrices block by block, each in a process of its own.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -15,14 +16,17 @@ struct RunOptions {
 };
 
 struct RunOutcome {
+  std::set<std::string> cells;                // ids of all cells of the blocks
   int measured = 0, present = 0, failed = 0;  // cells
   bool stopped = false;                       // by Ctrl-C
   std::vector<std::string> errors;            // of blocks whose input was wrong
+  std::vector<std::string> failures;          // of blocks that ended for another reason
 };
 
 /// Each block runs in a child process: its memory is given back, a crash or a hang of a cell is put
 /// down to that cell and the block goes on without it. To be called before the process has started
-/// threads. Ctrl-C lets the present pass end; everything measured is kept.
+/// threads. Ctrl-C (or SIGTERM) lets the present pass end; whole rounds are
+/// kept, the one under way is measured again next time. A second Ctrl-C does not wait.
 RunOutcome run_blocks(const std::vector<Block>& blocks, const RunOptions& options,
                       const Registry& registry);
 

@@ -75,8 +75,9 @@ std::string StoredPictures::write(const BlockSummary& block, const CellSummary& 
                                   const std::filesystem::path& file) {
   const ResultStore store = ResultStore::open(results_);
   const std::optional<ResultCell> stored = store.load_cell(cell.id);
-  const std::optional<CellVerdicts> verdicts = store.load_verdicts(cell.id, judge_source_hash());
-  if (!stored || !verdicts) throw InputError("cell " + cell.id + " has not been judged");
+  if (!stored) throw InputError("cell " + cell.id + " is missing");
+  const std::optional<CellVerdicts> verdicts = store.load_verdicts(*stored, judge_source_hash());
+  if (!verdicts) throw InputError("cell " + cell.id + " has not been judged");
 
   if (!loaded_ || loaded_->scene.content_hash() != block.scene_hash ||
       loaded_->path.content_hash() != block.path_hash) {

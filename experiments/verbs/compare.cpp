@@ -10,18 +10,36 @@
 namespace vislab {
 namespace {
 
-/// The rounds that both cells have, of the same run of their block.
-Estimate frame_ratio(const ResultCell& a, const ResultCell& b) {
-  SampleGrid of_a;
-  SampleGrid of_b;
-  for (const Round& x : a.rounds) {
-    for (const Round& y : b.rounds) {
-      if (x.session != y.session || x.number != y.number) continue;
-      of_a.push_back(x.frame_ms);
-      of_b.push_back(y.frame_ms);
+/// Frame times by session and round.
+using RoundTimes = std::map<std::pair<std::string, int>, std::vector<double>>;
+
+/// Of the other chain in the same rounds as this cell: as its anchor, or as a cell of its own.
+RoundTimes beside(const ResultCell& cell, const ResultCell& other) {
+  RoundTimes times;
+  for (const Round& round : other.rounds) times[{round.session, round.number}] = round.frame_ms;
+  if (const auto anchor = cell.anchors.find(other.key.chain); anchor != cell.anchors.end()) {
+    for (const AnchorRound& round : anchor->second) {
+      times[{round.session, round.number}] = round.frame_ms;
     }
   }
-  return paired_ratio(of_a, of_b);
+  return times;
+}
+
+/// Frame times of a over those of b, paired by round. The one that is no anchor leads: anchors are
+/// measured beside it.
+Estimate frame_ratio(const ResultCell& a, const ResultCell& b) {
+  const bool b_leads = a.anchors.find(b.key.chain) == a.anchors.end();
+  const ResultCell& leading = b_leads ? b : a;
+  const RoundTimes others = beside(leading, b_leads ? a : b);
+  SampleGrid of_leading;
+  SampleGrid of_other;
+  for (const Round& round : leading.rounds) {
+    const auto other = others.find({round.session, round.number});
+    if (other == others.end()) continue;
+    of_leading.push_back(round.frame_ms);
+    of_other.push_back(other->second);
+  }
+  return b_leads ? paired_ratio(of_other, of_leading) : paired_ratio(of_leading, of_other);
 }
 
 const CellSummary* find_cell(const BlockSummary& block, const std::string& chain) {

@@ -81,6 +81,7 @@ void describe_scene(const Lab& lab, const std::string& name, bool json) {
   facts.add("cells", std::uint64_t{scene.cells.size()});
   facts.add("portals", std::uint64_t{scene.portals.size()});
   facts.add("open_meshes", std::uint64_t{scene.report.open_meshes});
+  facts.add("self_intersecting_meshes", std::uint64_t{scene.report.self_intersecting_meshes});
   facts.add("zero_area_triangles", std::uint64_t{scene.report.zero_area_triangles});
   facts.add("unused_bad_vertices", std::uint64_t{scene.report.unused_bad_vertices});
   const glm::dvec3 size = scene.bounds().half_size() * 2.0;

@@ -18,7 +18,7 @@ std::vector<JudgedCell> present_cells(const std::filesystem::path& results,
       continue;  // a culler that no longer exists
     }
     if (chain_source_hash(cell.key.chain) != cell.key.sources) continue;
-    std::optional<CellVerdicts> verdicts = store.load_verdicts(cell.key.id(), judge_source_hash());
+    std::optional<CellVerdicts> verdicts = store.load_verdicts(cell, judge_source_hash());
     present.push_back({std::move(cell), std::move(verdicts)});
   }
   return present;

@@ -52,30 +52,25 @@ std::pair<int, int> parse_shard(const std::string& text) {
   return {shard, shards};
 }
 
-/// The cells of these blocks' scenes, in the columns that a first look needs.
-void print_results(const Lab& lab, const RunCall& call, const std::vector<Block>& blocks) {
-  Table table({"scene", "culler", "status", "frame_ms", "against_none", "cull_us", "draw_ms",
-               "submitted_triangles", "over", "recall", "false_px", "pixels", "image_px",
-               "false_objects", "false_triangles", "disputed_px"});
+/// The cells of a run, in the columns that a first look needs.
+void print_results(const Lab& lab, const RunCall& call, const std::set<std::string>& ids) {
+  Table table({"scene", "path", "frames", "culler", "status", "frame_ms", "against_none", "cull_us",
+               "draw_ms", "submitted_triangles", "over", "recall", "false_px", "pixels", "image_px",
+               "false_objects", "false_triangles", "excused_px"});
   for (const BlockSummary& block : summarise(present_cells(call.results, lab.cullers))) {
-    const auto asked = [&](const Block& b) {
-      return (b.scene == block.scene ||
-              std::filesystem::path(b.scene).stem().string() == block.scene) &&
-             b.viewport == block.viewport && b.threads == block.threads;
-    };
-    if (std::ranges::none_of(blocks, asked)) continue;
     for (const CellSummary& cell : block.cells) {
+      if (!ids.contains(cell.id)) continue;
       const auto judged = [&](auto value) {
         return cell.judged ? TableValue(value) : TableValue();
       };
-      table.add({block.scene, cell.culler,
+      table.add({block.scene, block.path, static_cast<std::uint64_t>(block.frames), cell.culler,
                  cell.status == ResultCell::Status::failed ? "failed: " + cell.reason
                                                            : to_string(cell.status),
                  cell.frame_ms.median.value, cell.against_none.value, cell.cull_us.median.value,
                  cell.draw_ms.median.value, cell.submitted_triangles, judged(cell.over),
                  judged(cell.recall), judged(cell.false_px), judged(cell.pixels),
                  cell.drawn ? judged(cell.image_px) : TableValue(), judged(cell.false_objects),
-                 judged(cell.false_triangles), judged(cell.disputed_px)});
+                 judged(cell.false_triangles), judged(cell.excused_px)});
     }
   }
   table.print(std::cout, call.json);
@@ -90,11 +85,16 @@ std::string status_of(const Block& block, const BlockCuller& culler,
     if (cell.key.chain != culler.chain || cell.key.replicate != culler.replicate ||
         cell.scene_source != block.scene || cell.path_source != block.path ||
         cell.key.viewport != block.viewport || cell.key.seed != block.seed ||
-        cell.key.threads != block.threads || cell.key.device != block.device) {
+        cell.key.threads != block.threads) {
       continue;
     }
+    // The run does not draw large scenes, and looks at few of their frames, whatever is asked.
+    const bool reduced = cell.key.device == "none" && block.device != "none";
+    if (cell.key.device != block.device && !reduced) continue;
     if (cell.status == ResultCell::Status::failed) return "failed: " + cell.reason;
-    if (block.frames > 0 && static_cast<int>(cell.frames.size()) != block.frames) continue;
+    if (block.frames > 0 && !reduced && static_cast<int>(cell.frames.size()) != block.frames) {
+      continue;
+    }
     const auto rounds = static_cast<int>(cell.rounds.size());
     return rounds >= block.rounds
                ? "done"
@@ -103,13 +103,32 @@ std::string status_of(const Block& block, const BlockCuller& culler,
   return "open";
 }
 
+void require_filter_fits(const Lab& lab, const RunCall& call, const std::vector<Block>& blocks) {
+  if (call.filter.empty()) return;
+  std::set<std::string> names;
+  for (const Block& block : blocks) {
+    for (const BlockCuller& culler : block.cullers) {
+      if (culler.chain.find(call.filter) != std::string::npos) return;
+      names.insert(lab.cullers.short_name(culler.chain));
+    }
+  }
+  if (std::ranges::any_of(names, [&](const std::string& name) {
+        return name.find(call.filter) != std::string::npos;
+      })) {
+    return;
+  }
+  throw unknown_name("part of a chain of these matrices", call.filter,
+                     {names.begin(), names.end()});
+}
+
 }  // namespace
 
 int plan(const Lab& lab, const RunCall& call) {
   Table table({"block", "scene", "path", "resolution", "frames", "rounds", "device", "threads",
                "culler", "status"});
   std::vector<JudgedCell> stored;
-  if (std::filesystem::exists(call.results)) stored = present_cells(call.results, lab.cullers);
+  if (std::filesystem::exists(call.results / "cells"))
+    stored = present_cells(call.results, lab.cullers);
   const std::vector<Block> blocks = blocks_of(lab, call);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const Block& block = blocks[i];
@@ -128,9 +147,14 @@ int plan(const Lab& lab, const RunCall& call) {
 
 int run(const Lab& lab, const RunCall& call) {
   const std::vector<Block> blocks = blocks_of(lab, call);
+  require_filter_fits(lab, call, blocks);
   RunOptions options;
-  options.settings = {lab.data,    lab.repository, call.results,
-                      call.filter, call.force,     call.retry_failed};
+  options.settings.folders = lab.data;
+  options.settings.repository = lab.repository;
+  options.settings.results = call.results;
+  options.settings.filter = call.filter;
+  options.settings.force = call.force;
+  options.settings.retry_failed = call.retry_failed;
   std::tie(options.shard, options.shards) = parse_shard(call.shard);
   options.quiet = call.quiet;
   const RunOutcome outcome = run_blocks(blocks, options, lab.cullers);
@@ -139,12 +163,13 @@ int run(const Lab& lab, const RunCall& call) {
     for (const std::string& error : outcome.errors) all += (all.empty() ? "" : "\n") + error;
     throw InputError(all);
   }
-  print_results(lab, call, blocks);
+  print_results(lab, call, outcome.cells);
+  for (const std::string& failure : outcome.failures) std::cerr << "vislab: " << failure << '\n';
   if (outcome.stopped) {
     std::cerr << "stopped; the same call goes on from here\n";
     return 1;
   }
-  return outcome.failed > 0 ? 1 : 0;
+  return outcome.failed > 0 || !outcome.failures.empty() ? 1 : 0;
 }
 
 }  // namespace vislab

@@ -223,6 +223,8 @@ TEST_F(BadInput, WrongCallsEndWithCodeTwo) {
         {"describe", "nothing.known"},
         {"export", "xml"},
         {"run", "small", "--shard", "3/2", "--results", results()},
+        {"run", "small", "--filter", "fits nothing", "--results", results()},
+        {"run", "small", "--frames", "3", "--results", results()},
         {"run", "--culler", "none", "--scene", "box_field_tiny", "--resolution", "0x5"},
         {"check", "--culler", "frustum.fast"},
         {"compare", "none", "frustum.fast"}}) {

@@ -29,7 +29,7 @@ ResultCell sample_cell() {
 
 TEST(ResultCell, ComesBackFromItsFileAsItWas) {
   const ResultCell cell = sample_cell();
-  const ResultCell back = parse_cell(to_json(cell), "test");
+  const ResultCell back = parse_cell(to_json(cell), "test").value();
   EXPECT_EQ(to_json(back), to_json(cell));
   EXPECT_EQ(back.key.id(), cell.key.id());
   EXPECT_EQ(back.rounds[0].frame_ms[1], 1.0 / 3.0);
@@ -62,6 +62,9 @@ TEST(ResultCell, DamagedTextIsRefusedAndNamed) {
       EXPECT_NE(std::string(error.what()).find("cells/x.json"), std::string::npos);
     }
   }
+  std::string newer = text;
+  newer.replace(newer.find("\"format\":"), 9, "\"format\":9");
+  EXPECT_FALSE(parse_cell(newer, "x").has_value()) << "of another format: not there";
   std::string other = text;
   other.replace(other.find("\"chain\":\"none\""), 14, "\"chain\":\"nope\"");
   EXPECT_THROW(parse_cell(other, "x"), InputError) << "the id no longer fits the key";
@@ -112,22 +115,29 @@ TEST(ResultStore, VerdictsOfAnotherJudgeOrDamagedOnesDoNotCount) {
   const TemporaryFolder folder;
   const ResultStore store = ResultStore::create(folder.path());
   CellVerdicts verdicts;
+  const ResultCell cell = sample_cell();
   verdicts.judge = "judge";
+  verdicts.answers = answer_hash(cell);
   verdicts.frames.resize(2);
   verdicts.frames[1].false_px = 4;
   verdicts.frames[1].wrong_px = {{3, 9}};
   verdicts.images = {{1, 2}, {3, 4}};
   verdicts.floor_disputed_px = 5;
-  store.save_verdicts("id", verdicts);
-  const auto back = store.load_verdicts("id", "judge");
+  store.save_verdicts(cell.key.id(), verdicts);
+  const auto back = store.load_verdicts(cell, "judge");
   ASSERT_TRUE(back.has_value());
   EXPECT_EQ(back->frames, verdicts.frames);
   EXPECT_EQ(back->images, verdicts.images);
   EXPECT_EQ(back->floor_disputed_px, 5U);
-  EXPECT_FALSE(store.load_verdicts("id", "another judge").has_value());
-  EXPECT_FALSE(store.load_verdicts("other", "judge").has_value());
-  write_file(folder.path() / "verdicts" / "id.json", "{\"judge\":\"jud");
-  EXPECT_FALSE(store.load_verdicts("id", "judge").has_value());
+  EXPECT_FALSE(store.load_verdicts(cell, "another judge").has_value());
+  ResultCell other = cell;
+  other.key.seed = 99;
+  EXPECT_FALSE(store.load_verdicts(other, "judge").has_value());
+  ResultCell changed = cell;
+  changed.frames[1].set = "another set";
+  EXPECT_FALSE(store.load_verdicts(changed, "judge").has_value()) << "verdicts on other answers";
+  write_file(folder.path() / "verdicts" / (cell.key.id() + ".json"), "{\"judge\":\"jud");
+  EXPECT_FALSE(store.load_verdicts(cell, "judge").has_value());
 }
 
 TEST(Files, AFileThatCannotBeWrittenLeavesNothing) {

@@ -106,6 +106,9 @@ TEST_F(Run, GoesOnAfterBeingKilledAndLosesNothing) {
       for (const Round& round : cell.rounds) names.insert(round.session);
       return names;
     }();
+    for (const auto& [chain, anchors] : cell.anchors) {
+      EXPECT_EQ(anchors.size(), 12U) << "every round has its pairs: " << chain;
+    }
     const std::size_t kept = rounds[cell.key.id()];
     if (kept > 0 && kept < 12) {
       EXPECT_EQ(sessions.size(), 2U) << "the rounds from before are kept";
@@ -168,6 +171,61 @@ TEST_F(Run, ForceMeasuresAgain) {
   const ResultCell cell = cells().front();
   EXPECT_EQ(cell.rounds.size(), 2U);
   EXPECT_NE(cell.rounds.front().session, before);
+}
+
+TEST_F(Run, ForceLeavesWhatIsThereUntilThereIsSomethingBetter) {
+  ASSERT_EQ(run_vislab(call(matrix(), results())).exit_code, 0);
+  const std::size_t count = cells().size();
+  kill_vislab(call(matrix(), results(), {"--force"}), 120);
+  EXPECT_EQ(cells().size(), count);
+  for (const ResultCell& cell : cells()) EXPECT_FALSE(cell.rounds.empty()) << cell.culler;
+}
+
+TEST_F(Run, AnAnchorThatFailsBesideAnotherCellKeepsItsResult) {
+  const std::string lists = "scene = [\"city_tiny\"]\nresolution = [\"512x512\"]\nframes = [60]\n";
+  const std::string first =
+      folder_.write("first.toml", "rounds = 1\n[lists]\nculler = [\"frustum.flat\"]\n" + lists);
+  ASSERT_EQ(run_vislab(call(first, results())).exit_code, 0);
+  // Now nothing has time enough: the new cell fails, what was done stays done.
+  const std::string second = folder_.write(
+      "second.toml",
+      "rounds = 1\ntimeout_s = 0.001\n[lists]\nculler = [\"occlusion.stop_and_wait\"]\n" + lists);
+  EXPECT_EQ(run_vislab(call(second, results())).exit_code, 1);
+  for (const ResultCell& cell : cells()) {
+    if (cell.culler == "occlusion.stop_and_wait") continue;
+    EXPECT_EQ(cell.status, ResultCell::Status::done) << cell.culler;
+    EXPECT_EQ(cell.rounds.size(), 1U);
+  }
+}
+
+TEST_F(Run, FewerRoundsThanAreThereMakeACellDone) {
+  const fs::path interrupted = folder_.path() / "interrupted";
+  ASSERT_EQ(run_vislab(call(matrix(), interrupted)).exit_code, 0);
+  const ResultStore store = ResultStore::open(interrupted);
+  for (ResultCell cell : store.load_all()) {
+    cell.status = ResultCell::Status::running;
+    store.save_cell(cell);
+  }
+  ASSERT_EQ(run_vislab(call(matrix(), interrupted)).exit_code, 0);
+  for (const ResultCell& cell : store.load_all()) {
+    EXPECT_EQ(cell.status, ResultCell::Status::done) << cell.culler;
+  }
+}
+
+TEST_F(Run, RoundsOfAnotherBuildAreNotMixedIn) {
+  ASSERT_EQ(run_vislab(call(matrix(), results())).exit_code, 0);
+  const ResultStore store = ResultStore::open(results());
+  for (ResultCell cell : store.load_all()) {
+    cell.context["build_type"] = "another";
+    cell.rounds.resize(1);
+    store.save_cell(cell);
+  }
+  ASSERT_EQ(run_vislab(call(matrix(), results())).exit_code, 0);
+  for (const ResultCell& cell : store.load_all()) {
+    EXPECT_EQ(cell.rounds.size(), 2U);
+    EXPECT_EQ(cell.rounds[0].session, cell.rounds[1].session);
+    EXPECT_NE(cell.context.at("build_type"), "another");
+  }
 }
 
 TEST_F(Run, ACellOfMendedSourcesIsMeasuredAgainAndOthersAreNot) {
