@@ -36,13 +36,14 @@ function(vislab_add_library name)
   target_include_directories(vislab_${name} PUBLIC "${PROJECT_SOURCE_DIR}")
 endfunction()
 
-# vislab_add_culler_family(FAMILY CULLERS name... [SOURCES file...] [LIBRARIES library...])
+# vislab_add_culler_family(FAMILY CULLERS name... [SOURCES file...] [LIBRARIES library...] [USES_TRUTH])
 # Adds the culler FAMILY.name for each name; its file is name.cpp, which defines
 #   vislab::CullerEntry vislab::cullers::FAMILY_name();
 # A family whose only culler bears its own name (none, oracle) is called by that name alone.
-# SOURCES are files that several cullers of the family share.
+# SOURCES are files that several cullers of the family share. USES_TRUTH: the answers are the judge's
+# (oracles), so that a mended judge makes them stale too.
 function(vislab_add_culler_family family)
-  cmake_parse_arguments(ARG "" "" "CULLERS;SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "USES_TRUTH" "" "CULLERS;SOURCES;LIBRARIES" ${ARGN})
   set(files ${ARG_SOURCES})
   foreach(culler IN LISTS ARG_CULLERS)
     list(APPEND files ${culler}.cpp)
@@ -55,6 +56,9 @@ function(vislab_add_culler_family family)
   vislab_add_library(${family} SOURCES ${files} PUBLIC vislab_culler PRIVATE ${ARG_LIBRARIES})
   set_property(GLOBAL APPEND PROPERTY VISLAB_CULLER_LIBRARIES vislab_${family})
   set_property(GLOBAL APPEND PROPERTY VISLAB_CULLER_FAMILIES ${family})
+  if(ARG_USES_TRUTH)
+    set_property(GLOBAL APPEND PROPERTY VISLAB_TRUTH_FAMILIES ${family})
+  endif()
 endfunction()
 
 # vislab_write_registry(): the library vislab_cullers, whose register_all_cullers(Registry&) adds every

@@ -1,7 +1,10 @@
 # Script: writes a C++ file with one hash for the sources of every culler family and one for the judge.
-#   cmake -D SOURCE_DIR=… -D FAMILIES=a,b -D OUTPUT=file -P WriteSourceHashes.cmake
-# A family's answers depend on its own folder and on the layers below it; the judge's on itself and the
-# same layers. Tests of a cell's key rely on it: a mended family gets another hash, the others keep theirs.
+#   cmake -D SOURCE_DIR=… -D FAMILIES=a,b -D TRUTH_FAMILIES=b -D OUTPUT=file -P WriteSourceHashes.cmake
+# A family's answers depend on its own folder and on the layers below it, those of TRUTH_FAMILIES on the
+# judge too; the judge's on itself and the same layers. A mended family gets another hash, the others keep
+# theirs.
+
+cmake_policy(VERSION 3.25)
 
 function(hash_folders result)
   set(text "")
@@ -20,9 +23,14 @@ endfunction()
 
 set(layers common/geometry common/scene common/render common/culler)
 string(REPLACE "," ";" families "${FAMILIES}")
+string(REPLACE "," ";" truth_families "${TRUTH_FAMILIES}")
 set(entries "")
 foreach(family IN LISTS families)
-  hash_folders(hash ${layers} algorithms/${family})
+  set(folders ${layers} algorithms/${family})
+  if(family IN_LIST truth_families)
+    list(APPEND folders common/judge)
+  endif()
+  hash_folders(hash ${folders})
   string(APPEND entries "      {\"${family}\", \"${hash}\"},\n")
 endforeach()
 hash_folders(judge_hash ${layers} common/judge)

@@ -17,8 +17,9 @@ namespace fs = std::filesystem;
 class SourceHashes : public ::testing::Test {
  protected:
   SourceHashes() {
-    for (const char* file : {"common/geometry/plane.h", "common/judge/metrics.cpp",
-                             "algorithms/frustum/flat.cpp", "algorithms/backface/polygon.cpp"}) {
+    for (const char* file :
+         {"common/geometry/plane.h", "common/judge/metrics.cpp", "algorithms/frustum/flat.cpp",
+          "algorithms/backface/polygon.cpp", "algorithms/oracle/oracle.cpp"}) {
       fs::create_directories((folder_.path() / file).parent_path());
       folder_.write(file, "int x;\n");
     }
@@ -27,10 +28,10 @@ class SourceHashes : public ::testing::Test {
   /// Hashes by name, as the script writes them for the files as they are now.
   std::map<std::string, std::string> hashes() {
     const fs::path output = folder_.path() / "hashes.cpp";
-    const std::string command = std::string(VISLAB_CMAKE) +
-                                " -D SOURCE_DIR=" + folder_.path().string() +
-                                " -D FAMILIES=frustum,backface -D OUTPUT=" + output.string() +
-                                " -P " VISLAB_SOURCE_DIR "/cmake/WriteSourceHashes.cmake";
+    const std::string command =
+        std::string(VISLAB_CMAKE) + " -D SOURCE_DIR=" + folder_.path().string() +
+        " -D FAMILIES=frustum,backface,oracle -D TRUTH_FAMILIES=oracle -D OUTPUT=" +
+        output.string() + " -P " VISLAB_SOURCE_DIR "/cmake/WriteSourceHashes.cmake";
     EXPECT_EQ(std::system(command.c_str()), 0);
     const std::string text = read_file(output);
     std::map<std::string, std::string> found;
@@ -39,7 +40,7 @@ class SourceHashes : public ::testing::Test {
       found[(*it)[1].matched ? (*it)[1].str() : "judge"] =
           (*it)[2].matched ? (*it)[2].str() : (*it)[3].str();
     }
-    EXPECT_EQ(found.size(), 3U);
+    EXPECT_EQ(found.size(), 4U);
     return found;
   }
 
@@ -68,6 +69,7 @@ TEST_F(SourceHashes, AMendedJudgeLeavesTheMethodsAlone) {
   EXPECT_NE(after.at("judge"), before.at("judge"));
   EXPECT_EQ(after.at("frustum"), before.at("frustum"));
   EXPECT_EQ(after.at("backface"), before.at("backface"));
+  EXPECT_NE(after.at("oracle"), before.at("oracle")) << "its answers are the judge's";
 }
 
 TEST(ChainSourceHash, DependsOnTheFamiliesOfItsStages) {
