@@ -6,6 +6,8 @@ find_package(glm REQUIRED)
 find_package(embree 3.13 REQUIRED)
 find_package(assimp REQUIRED)
 find_package(meshoptimizer REQUIRED)
+set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE ON)  # solid meshes are small work in every build
+find_package(CGAL REQUIRED)
 find_package(TBB REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(tomlplusplus REQUIRED)

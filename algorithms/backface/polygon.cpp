@@ -5,14 +5,16 @@
 //   where the planes of the triangles are known: behind the plane means seen from behind. An affine
 //   map takes the inside of a solid to the inside of its image, so turned, sheared and scaled
 //   objects need nothing else.
-// Guarantee: conservative for meshes that are closed, outward and free of self-intersection (other
-//   meshes are kept whole, unless open=cull), because a triangle goes only if the eye is behind its
-//   plane by more than the error of the test, and because an object that may hold the eye or be cut
-//   by the near plane is kept whole. A triangle seen exactly edge-on is kept.
+// Guarantee: conservative. Only solid meshes are tested: closed, outward and free of
+//   self-intersection (other meshes are kept whole, unless open=cull; a surface that crosses itself
+//   can show its back to the outside, as those of the scenes cow and man do). A triangle goes only
+//   if the eye is behind its plane by more than the error of the test, and an object that may hold
+//   the eye or be cut by the near plane is kept whole. A triangle seen exactly edge-on is kept.
 // Cost: O(candidate triangles): three multiplications and additions each; one 3 x 3 inverse an
 //   object. Memory: 32 bytes a triangle of a mesh; instances share it.
-// Limits: about half of a solid's faces at best; nothing for open meshes; does not see that objects
-//   hide each other. Short runs of kept triangles make long lists of ranges.
+// Limits: about half of a solid's faces at best; nothing for meshes that are open or cross or touch
+//   themselves anywhere; does not see that objects hide each other. Short runs of kept triangles
+//   make long lists of ranges.
 // Sources: textbook chapter 17, Culling (in German), 17.1 (Hesse form; e = 0 is front); Zachmann
 //   slides 7-10; Kowalka 2016, 2.2.2, eq. 2.1 (normal of a polygon).
 
@@ -31,7 +33,7 @@ CullerInfo describe() {
   info.name = "backface.polygon";
   info.family = "backface";
   info.summary =
-      "Leaves out the triangles of closed meshes that face away from the eye, by one plane test a "
+      "Leaves out the triangles of solid meshes that face away from the eye, by one plane test a "
       "triangle in the mesh's own frame.";
   info.guarantee = Guarantee::conservative;
   info.repeatability = Repeatability::stateless;
@@ -41,13 +43,12 @@ CullerInfo describe() {
   info.stage = PipelineStage::geometry;
   info.parameters = {ParameterSpec::choice(
       "open", "two_sided", {"two_sided", "cull"}, ParameterSpec::Stage::build,
-      "what to do with meshes that are not closed: two_sided keeps them whole; cull tests them too "
-      "and loses what is seen from behind")};
+      "what to do with meshes that are not solid (open, or crossing themselves): two_sided keeps "
+      "them whole; cull tests them too and loses what is seen from behind")};
   info.cost = "O(candidate triangles): one plane test each, and a 3 x 3 inverse an object";
   info.limits =
-      "About half of a solid's faces at best; keeps open meshes and objects around the eye whole; "
-      "assumes that a closed mesh does not intersect itself. With open=cull the insides of open "
-      "meshes disappear.";
+      "About half of a solid's faces at best; keeps meshes that are open or cross themselves, and "
+      "objects around the eye, whole. With open=cull the backs that such meshes show disappear.";
   info.sources = {
       "Textbook chapter 17, Culling (in German), 17.1: back faces from the Hesse form of their "
       "planes",
@@ -131,7 +132,7 @@ class Polygon : public ICuller {
     planes_.clear();
     for (const Mesh& mesh : scene.meshes) {
       Solid solid;
-      solid.tested = mesh.closed || cull_open_;
+      solid.tested = mesh.solid || cull_open_;
       if (solid.tested) {
         const glm::dvec3 low(glm::abs(mesh.bounds.min)), high(glm::abs(mesh.bounds.max));
         solid.size = std::max({low.x, low.y, low.z, high.x, high.y, high.z});

@@ -1,9 +1,10 @@
-// Closed and outward: the meshes for which back faces may be left out.
+// Closed and outward: meshes that bound solids, if they do not intersect themselves.
 //
 // Idea: vertices at equal positions are one; every edge must be borne by exactly two triangles that
 // run along it in opposite directions; the parts that hang together by edges must each enclose a
 // positive volume (the sum of signed tetrahedra, divergence theorem).
-// Guarantee: what passes is a closed oriented surface. Self-intersection is not looked for.
+// Guarantee: what passes is a closed oriented surface. Self-intersection is looked for elsewhere
+//   (solid_mesh.h).
 // Cost: O(n log n) for n triangles.
 #include <algorithm>
 #include <cstdint>

@@ -6,6 +6,7 @@
 #include "common/scene/content_hash.h"
 #include "common/scene/error.h"
 #include "common/scene/quake_world.h"
+#include "common/scene/solid_mesh.h"
 #include "common/scene/transform.h"
 
 namespace vislab {
@@ -85,7 +86,9 @@ void finish_mesh(Mesh& mesh, std::size_t index, SceneReport& report) {
     throw InputError(where + " is too large for float coordinates");
   }
   mesh.closed = is_closed_outward(mesh);
+  mesh.solid = mesh.closed && is_free_of_self_intersection(mesh);
   if (!mesh.closed) ++report.open_meshes;
+  if (mesh.closed && !mesh.solid) ++report.self_intersecting_meshes;
 }
 
 std::string hash_of(const Scene& scene) {

@@ -34,6 +34,9 @@ struct Mesh {
   Aabb bounds;                        // of the vertices that triangles use
   /// Every connected part is closed, consistently oriented and outward (see is_closed_outward).
   bool closed = false;
+  /// Closed, and the surface does not intersect or touch itself (see solid_mesh.h): from outside
+  /// nothing but front faces can be seen.
+  bool solid = false;
 };
 
 /// An instance of a mesh.
@@ -61,6 +64,7 @@ struct SceneReport {
   std::size_t zero_area_triangles = 0;
   std::size_t unused_bad_vertices = 0;
   std::size_t open_meshes = 0;
+  std::size_t self_intersecting_meshes = 0;  // closed, but not solid
 };
 
 /// Immutable after finish(). Movement and visibility toggles live in SceneState.
@@ -78,7 +82,8 @@ class Scene {
   /// the public members are filled. Throws InputError for used vertices that are NaN or infinite,
   /// indices out of range, meshes without a triangle, singular transforms, no object at all, or
   /// 2^32 - 1 triangles and more. Unused vertices that are NaN or infinite are removed. Fills
-  /// Mesh::bounds, Mesh::closed and the report. O(n log n) in the meshes, O(n) in the objects.
+  /// Mesh::bounds, Mesh::closed, Mesh::solid and the report. O(n log n) in the meshes, O(n) in the
+  /// objects.
   void finish();
 
   std::size_t object_count() const { return objects.size(); }
