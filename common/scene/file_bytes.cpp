@@ -11,6 +11,15 @@
 
 namespace vislab {
 
+std::string lower_extension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  if (!extension.empty()) extension.erase(0, 1);
+  for (char& c : extension) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return extension;
+}
+
 void require_file(const std::filesystem::path& file) {
   std::error_code ignored;  // exists() and the like answer false, which is what is asked
   if (!std::filesystem::exists(file, ignored)) {

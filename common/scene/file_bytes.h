@@ -6,6 +6,9 @@
 
 namespace vislab {
 
+/// The extension of a file's name in lower case, without the dot; empty if there is none.
+std::string lower_extension(const std::filesystem::path& file);
+
 /// Throws InputError unless `file` is a regular file that is not empty.
 void require_file(const std::filesystem::path& file);
 

@@ -86,8 +86,9 @@ LoadedScene load_described(const std::filesystem::path& file, const DataFolders&
 
 LoadedScene load_file(const std::filesystem::path& file, const DataFolders& folders) {
   require_file(file);
-  if (file.extension() == ".toml") return load_described(file, folders);
-  if (file.extension() == ".bsp") return {import_quake_world(file), "", ""};
+  const std::string extension = lower_extension(file);
+  if (extension == "toml") return load_described(file, folders);
+  if (extension == "bsp") return {import_quake_world(file), "", ""};
   return {import_mesh_file(file), "", ""};
 }
 

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 
 #include "common/scene/assimp_reader.h"
 #include "common/scene/error.h"
@@ -196,13 +197,16 @@ Scene import_in_child(const Source& source, unsigned time_limit_s) {
   return receive(answer);
 }
 
-std::string lower_extension(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  if (!extension.empty()) extension.erase(0, 1);
-  for (char& c : extension) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+/// Some editors begin a text with a byte-order mark, which must not become a part of its first
+/// word. A file without one stays to be read by the importer itself.
+void leave_out_mark(Source& source) {
+  constexpr std::string_view mark = "\xEF\xBB\xBF";
+  std::string bytes = source.bytes ? std::move(*source.bytes) : read_bytes(source.file);
+  if (bytes.starts_with(mark)) {
+    source.bytes = bytes.substr(mark.size());
+  } else if (source.bytes) {
+    source.bytes = std::move(bytes);
   }
-  return extension;
 }
 
 }  // namespace
@@ -219,6 +223,7 @@ Scene import_mesh_file(const std::filesystem::path& file, unsigned time_limit_s)
   if (source.format.empty()) {
     throw InputError(file.string() + " has no extension that tells its format, such as .ply");
   }
+  if (source.format == "obj") leave_out_mark(source);
   check_mesh_bytes(source.bytes ? *source.bytes : read_bytes(file), source.format, file.string());
   Scene scene;
   try {

@@ -68,6 +68,20 @@ TEST(Library, AFileBesideItsDescriptionNeedsNoPackage) {
   EXPECT_EQ(loaded.default_path, "turn");
 }
 
+TEST(Library, ExtensionsMayBeInUpperCase) {
+  const ScratchFolder folder;
+  folder.write("mesh.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const std::filesystem::path file = folder.write("MINE.TOML", "[mesh]\nfile = \"mesh.off\"\n");
+  EXPECT_EQ(load_scene(file.string(), repository_data()).scene.name, "MINE");
+  const std::filesystem::path world = folder.write("W.BSP", "no world");
+  const std::string lower = folder.write("w.bsp", "no world").string();
+  const auto message = [](const std::string& name) {
+    return input_error([&]() { load_scene(name, repository_data()); });
+  };
+  EXPECT_EQ(message(world.string()).substr(world.string().size()),
+            message(lower).substr(lower.size()));
+}
+
 TEST(Library, AMeshFileIsASceneWithAFittedPath) {
   const ScratchFolder folder;
   const std::filesystem::path file =

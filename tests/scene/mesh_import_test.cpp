@@ -109,6 +109,14 @@ TEST_F(MeshImport, ReadsTheSameTetrahedronFromEveryFormat) {
   EXPECT_EQ(corners_of(import("T.OFF", tetrahedron_off)), expected);
 }
 
+TEST_F(MeshImport, SkipsTheByteOrderMarkOfAnObjFile) {
+  const std::string text = tetrahedron_obj.substr(tetrahedron_obj.find('v'));
+  const std::vector<glm::vec3> expected = corners_of(import("plain.obj", text));
+  const std::string marked = "\xEF\xBB\xBF" + text;
+  EXPECT_EQ(corners_of(import("marked.obj", marked)), expected);
+  EXPECT_EQ(corners_of(import("marked.obj.gz", gzipped(marked))), expected);
+}
+
 TEST_F(MeshImport, JoinsVerticesAndKeepsTriangles) {
   const Scene scene = import("t.off", tetrahedron_off);
   ASSERT_EQ(scene.meshes.size(), 1U);
