@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "common/scene/error.h"
+#include "common/scene/file_bytes.h"
 
 namespace vislab {
 namespace {
@@ -34,6 +35,10 @@ std::vector<char> encoded(const Image& image) {
 }  // namespace
 
 void write_png(const std::filesystem::path& path, const Image& image) {
+  if (lower_extension(path) != "png") {
+    throw InputError(path.string() +
+                     ": pictures are written as PNG; give a name that ends in .png");
+  }
   const std::vector<char> bytes = encoded(image);
   std::filesystem::path temporary = path;
   temporary += ".tmp";

@@ -17,7 +17,8 @@ struct Image {
 };
 
 /// Writes a PNG file under a temporary name beside `path` and renames it, so that `path` is whole
-/// or untouched. Throws InputError that names the path if it cannot be written.
+/// or untouched. Throws InputError that names the path if it cannot be written, or if its name does
+/// not end in .png (in either case).
 void write_png(const std::filesystem::path& path, const Image& image);
 
 /// Throws InputError if the file cannot be read or is not a PNG.

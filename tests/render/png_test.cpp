@@ -47,6 +47,15 @@ TEST_F(Png, NamesThePathThatCannotBeWritten) {
   }
 }
 
+TEST_F(Png, RefusesNamesOfOtherFormats) {
+  for (const char* name : {"a.jpg", "a", "a.png.gz"}) {
+    EXPECT_THROW(write_png(folder_ / name, image_), InputError) << name;
+  }
+  EXPECT_EQ(files(), 0U);
+  write_png(folder_ / "A.PNG", image_);
+  EXPECT_EQ(read_png(folder_ / "A.PNG"), image_);
+}
+
 TEST_F(Png, LeavesNothingBehindWhenThePathIsAFolder) {
   fs::create_directories(folder_ / "a.png" / "inside");
   EXPECT_THROW(write_png(folder_ / "a.png", image_), InputError);
