@@ -1,6 +1,8 @@
 #include "common/render/canvas.h"
 
-#include <cairo.h>
+#include <cairo-ft.h>
+#include <ft2build.h>
+#include FT_FREETYPE_H
 
 #include <algorithm>
 #include <stdexcept>
@@ -16,6 +18,39 @@ void require(cairo_status_t status) {
     throw std::runtime_error(std::string("drawing a picture: ") + cairo_status_to_string(status));
   }
 }
+
+/// The fonts of all pictures, read from their files: asking the system for a font by name gives
+/// another one where it is missing.
+class Fonts {
+ public:
+  /// Never destroyed: cairo keeps glyphs of fonts until the process ends.
+  static const Fonts& get() {
+    static const Fonts* const fonts = new Fonts;
+    return *fonts;
+  }
+  cairo_font_face_t* face(bool bold) const { return bold ? bold_ : regular_; }
+
+ private:
+  Fonts() {
+    if (FT_Init_FreeType(&library_) != 0) throw std::runtime_error("FreeType does not start");
+    regular_ = read(VISLAB_FONT);
+    bold_ = read(VISLAB_FONT_BOLD);
+  }
+
+  cairo_font_face_t* read(const char* file) {
+    FT_Face face = nullptr;
+    if (FT_New_Face(library_, file, 0, &face) != 0) {
+      throw std::runtime_error(std::string("the font file ") + file + " cannot be read");
+    }
+    cairo_font_face_t* const result = cairo_ft_font_face_create_for_ft_face(face, 0);
+    require(cairo_font_face_status(result));
+    return result;
+  }
+
+  FT_Library library_ = nullptr;
+  cairo_font_face_t* regular_ = nullptr;
+  cairo_font_face_t* bold_ = nullptr;
+};
 
 /// Owns a cairo image of 32-bit pixels 0x00RRGGBB.
 class Surface {
@@ -44,6 +79,11 @@ class Surface {
 struct Canvas::State {
   State(int w, int h) : width(w), height(h), surface(w, h), context(cairo_create(surface.get())) {
     require(cairo_status(context));
+    cairo_font_options_t* const options = cairo_font_options_create();
+    cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
+    cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_SLIGHT);
+    cairo_set_font_options(context, options);
+    cairo_font_options_destroy(options);
   }
   ~State() { cairo_destroy(context); }
   State(const State&) = delete;
@@ -70,8 +110,7 @@ void Canvas::text(double left, double y, double width, double size, bool bold,
                   const std::string& words) {
   cairo_t* const cairo = state_->context;
   cairo_save(cairo);
-  cairo_select_font_face(cairo, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
-                         bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_face(cairo, Fonts::get().face(bold));
   cairo_set_font_size(cairo, size);
   cairo_text_extents_t extents;
   cairo_text_extents(cairo, words.c_str(), &extents);
