@@ -19,6 +19,11 @@
 
 namespace vislab {
 
+/// Larger world coordinates and smaller scenes are refused: where squares and products of lengths
+/// leave float, the ray tracer and the graphics device see nothing.
+inline constexpr double max_scene_coordinate_m = 1e11;
+inline constexpr double min_scene_extent_m = 1e-11;
+
 using MeshId = std::uint32_t;
 using ObjectId = std::uint32_t;
 using CellId = std::uint32_t;

@@ -60,6 +60,33 @@ TEST_F(Paths, TheFittedPathOfAModelIsAnOrbitOutsideOfItsBox) {
   }
 }
 
+TEST_F(Paths, ASceneThatIsASinglePointIsSeenFromOneMetreAndMore) {
+  for (const glm::dvec3& place : {glm::dvec3(0.0), glm::dvec3(1e-30), glm::dvec3(3.0, -7.0, 1e4)}) {
+    scene_ = Scene();
+    scene_.meshes.emplace_back();
+    scene_.meshes[0].positions.assign(3, glm::vec3(0.0F));
+    scene_.meshes[0].triangles.emplace_back(0, 1, 2);
+    scene_.objects.push_back({0, box_transform(place, glm::dvec3(1.0)), none_id});
+    scene_.finish();
+    EXPECT_EQ(scene_.report.zero_area_triangles, 1U);
+    const std::string turn = "kind = \"turn\"\neye = [0, 0, 0]\nrelative = true\n";
+    const std::string orbit = "kind = \"orbit\"\n";
+    const Path fitted = load_path("", scene_, {512, 512}, 0, test::repository_data());
+    for (const Path& path : {fitted, load(turn), load(orbit)}) {
+      for (const PathFrame& frame : path.frames) {
+        const Lens& lens = frame.camera.lens;
+        EXPECT_TRUE(std::isfinite(glm::length(frame.camera.pose.back)));
+        EXPECT_GT(lens.near_m, 0.0);
+        EXPECT_LT(lens.near_m, lens.far_m);
+        EXPECT_LT(frame.camera.planar_depth(place), lens.far_m);
+      }
+    }
+    if (glm::length(place) < 1.0) {
+      EXPECT_GT(glm::distance(fitted.frames[0].camera.pose.eye, place), 1.0);
+    }
+  }
+}
+
 TEST_F(Paths, TheImageIsAsWideAsTheViewportSays) {
   const Path path = load_path("", scene_, {400, 200}, 0, test::repository_data());
   const Lens& lens = path.frames[0].camera.lens;

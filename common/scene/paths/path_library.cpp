@@ -27,14 +27,25 @@ struct Plan {
   std::optional<double> near_m, far_m;  // fitted to the scene if absent
 };
 
+/// The scene's box, or one of 1 m radius around a scene that is a single point: ways and lenses are
+/// fitted to it.
+Aabb framed(const Scene& scene) {
+  const Aabb& box = scene.bounds();
+  if (glm::length(box.half_size()) >= 0.5 * min_scene_extent_m) return box;
+  const glm::vec3 center(box.center());
+  const glm::vec3 reach(static_cast<float>(std::numbers::inv_sqrt3));
+  return {center - reach, center + reach};
+}
+
 /// Points of a description: in the world, or, if `relative` is set, from the centre of the scene's
 /// box in units of the radius of its circumscribed sphere.
 class Points {
  public:
   Points(const Settings& settings, const Scene& scene) : settings_(settings) {
     if (settings.flag("relative", false)) {
-      center_ = scene.bounds().center();
-      unit_ = glm::length(scene.bounds().half_size());
+      const Aabb box = framed(scene);
+      center_ = box.center();
+      unit_ = glm::length(box.half_size());
     }
   }
   std::vector<glm::dvec3> list(const std::string& key, std::size_t at_least) const {
@@ -60,7 +71,7 @@ Track read_orbit(const Settings& settings, const Scene& scene) {
   orbit.distance = settings.number("distance", 1.01 + orbit.swing, 1000.0, orbit.distance);
   orbit.elevation_deg = settings.number("elevation_deg", -89.0, 89.0, orbit.elevation_deg);
   orbit.turns = static_cast<double>(settings.whole("turns", -100, 100, 1));
-  return orbit_track(scene.bounds(), orbit);
+  return orbit_track(framed(scene), orbit);
 }
 
 /// Looks to `target` if there is one, else where it goes.
@@ -152,7 +163,7 @@ Plan fitted_plan(const Scene& scene) {
   Plan plan;
   plan.track = scene.quake && !scene.quake->places.empty()
                    ? quake_track(scene, default_places)
-                   : orbit_track(scene.bounds(), OrbitParameters());
+                   : orbit_track(framed(scene), OrbitParameters());
   return plan;
 }
 
@@ -207,7 +218,7 @@ Path load_path(const std::string& name_or_file, const Scene& scene, const Viewpo
     const std::filesystem::path file = located(name_or_file, folders);
     require_file(file);
     path.name = file.stem().string();
-    if (file.extension() == ".json") {
+    if (lower_extension(file) == "json") {
       const std::vector<Pose> poses = read_recorded_poses(file);
       plan.frames = static_cast<int>(poses.size());
       plan.track = list_track(poses);
@@ -217,7 +228,7 @@ Path load_path(const std::string& name_or_file, const Scene& scene, const Viewpo
   }
   if (frames > 0) plan.frames = frames;
   const std::vector<Pose> poses = plan.track.sampled(plan.frames);
-  const Lens lens = fitted_lens(plan, poses, scene.bounds(), viewport.aspect());
+  const Lens lens = fitted_lens(plan, poses, framed(scene), viewport.aspect());
   for (const Pose& pose : poses) path.frames.push_back({{pose, lens}, {}});
   return path;
 }
