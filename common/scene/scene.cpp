@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "common/scene/content_hash.h"
 #include "common/scene/error.h"
@@ -128,6 +129,33 @@ glm::dvec3 origin_of(const Aabb& bounds) {
   return far_away ? center : glm::dvec3(0.0);
 }
 
+std::string metres(double value) {
+  std::ostringstream text;
+  text << value << " m";
+  return text.str();
+}
+
+/// Throws unless the scene lies within the limits of scene.h. Meshes that are single points have no
+/// extent to be lost.
+void require_scale(const Scene& scene) {
+  const Aabb& box = scene.bounds();
+  const glm::dvec3 reach = glm::max(glm::abs(glm::dvec3(box.min)), glm::abs(glm::dvec3(box.max)));
+  const double farthest = std::max({reach.x, reach.y, reach.z});
+  if (farthest > max_scene_coordinate_m) {
+    throw InputError("the scene reaches to " + metres(farthest) +
+                     " from the origin along an axis; at most " + metres(max_scene_coordinate_m) +
+                     " is allowed");
+  }
+  const glm::dvec3 size = box.half_size() * 2.0;
+  const double extent = std::max({size.x, size.y, size.z});
+  const bool only_points = std::ranges::all_of(
+      scene.meshes, [](const Mesh& mesh) { return mesh.bounds.min == mesh.bounds.max; });
+  if (extent < min_scene_extent_m && !only_points) {
+    throw InputError("the scene is only " + metres(extent) + " large; at least " +
+                     metres(min_scene_extent_m) + " is needed");
+  }
+}
+
 void require_cell(CellId cell, std::size_t count, const std::string& where) {
   if (cell >= count) {
     throw InputError(where + ": cell " + std::to_string(cell) + " is out of range; there are " +
@@ -191,6 +219,7 @@ void Scene::finish() {
     require_cell(portals[i].to, cells.size(), where);
     if (portals[i].polygon.size() < 3) throw InputError(where + " has fewer than three corners");
   }
+  require_scale(*this);
   origin_ = origin_of(bounds_);
   content_hash_ = hash_of(*this);
 }

@@ -85,10 +85,11 @@ class Scene {
 
   /// Validates everything and computes what the functions below return. To be called once, after
   /// the public members are filled. Throws InputError for used vertices that are NaN or infinite,
-  /// indices out of range, meshes without a triangle, singular transforms, no object at all, or
-  /// 2^32 - 1 triangles and more. Unused vertices that are NaN or infinite are removed. Fills
-  /// Mesh::bounds, Mesh::closed, Mesh::solid and the report. O(n log n) in the meshes, O(n) in the
-  /// objects.
+  /// indices out of range, coordinates and extents beyond the limits above (a scene whose meshes
+  /// are all single points may have no extent), meshes without a triangle, singular transforms, no
+  /// object at all, or 2^32 - 1 triangles and more. Unused vertices that are NaN or infinite are
+  /// removed. Fills Mesh::bounds, Mesh::closed, Mesh::solid and the report. O(n log n) in the
+  /// meshes, O(n) in the objects.
   void finish();
 
   std::size_t object_count() const { return objects.size(); }

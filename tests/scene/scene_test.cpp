@@ -128,6 +128,22 @@ TEST(Scene, KeepsAndCountsTrianglesWithoutArea) {
   EXPECT_EQ(scene.triangle_count(), 14U);
 }
 
+TEST(Scene, RefusesScalesThatFloatCannotHandle) {
+  const auto scaled = [](double at, double size) {
+    Scene scene = cubes(1);
+    scene.objects[0].transform = box_transform({at, 0.0, 0.0}, glm::dvec3(size));
+    return scene;
+  };
+  EXPECT_TRUE(says(finish_error(scaled(1e13, 1.0)), "reaches to 1e+13 m"));
+  EXPECT_TRUE(says(finish_error(scaled(-2e11, 1.0)), "at most 1e+11 m is allowed"));
+  EXPECT_TRUE(says(finish_error(scaled(0.0, 1.1e11)), "at most 1e+11 m is allowed"));
+  EXPECT_TRUE(says(finish_error(scaled(0.0, 1e-16)), "the scene is only 2e-16 m large"));
+  EXPECT_TRUE(says(finish_error(scaled(0.0, 1e-12)), "at least 1e-11 m is needed"));
+  for (Scene scene : {scaled(9e10, 1.0), scaled(0.0, 9e10), scaled(0.0, 1e-11)}) {
+    EXPECT_NO_THROW(scene.finish());
+  }
+}
+
 TEST(Scene, CountsMeshesThatAreNotClosed) {
   Scene scene = cubes(1);
   scene.meshes.push_back(cube_mesh());
