@@ -1,24 +1,11 @@
 #include <gtest/gtest.h>
 
-#include <utility>
-
 #include "common/scene/generators/generators.h"
 #include "common/scene/scene.h"
+#include "tests/scene/test_meshes.h"
 
 namespace vislab {
 namespace {
-
-Mesh inverted(Mesh mesh) {
-  for (glm::uvec3& triangle : mesh.triangles) std::swap(triangle.x, triangle.y);
-  return mesh;
-}
-
-/// Adds a mesh beside another, in the same mesh.
-void append(Mesh& mesh, const Mesh& other, const glm::vec3& offset) {
-  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
-  for (const glm::vec3& p : other.positions) mesh.positions.push_back(p + offset);
-  for (const glm::uvec3& t : other.triangles) mesh.triangles.push_back(t + base);
-}
 
 TEST(ClosedMesh, ACubeIsClosed) { EXPECT_TRUE(is_closed_outward(cube_mesh())); }
 
@@ -52,14 +39,7 @@ TEST(ClosedMesh, TwoCubesAreClosedAndOneInvertedAmongThemIsFound) {
 }
 
 TEST(ClosedMesh, TakesVerticesAtEqualPositionsAsOne) {
-  const Mesh cube = cube_mesh();
-  Mesh split;
-  for (const glm::uvec3& triangle : cube.triangles) {
-    const auto base = static_cast<std::uint32_t>(split.positions.size());
-    for (int i = 0; i < 3; ++i) split.positions.push_back(cube.positions[triangle[i]]);
-    split.triangles.emplace_back(base, base + 1, base + 2);
-  }
-  EXPECT_TRUE(is_closed_outward(split));
+  EXPECT_TRUE(is_closed_outward(with_split_vertices(cube_mesh())));
 }
 
 TEST(ClosedMesh, PassesOverTrianglesThatAreCollapsed) {

@@ -9,6 +9,7 @@
 
 #include "common/scene/generators/generators.h"
 #include "tests/scene/test_files.h"
+#include "tests/scene/test_meshes.h"
 
 namespace vislab {
 namespace {
@@ -23,13 +24,6 @@ Mesh finished(Mesh mesh) {
 }
 
 bool solid(const Mesh& mesh) { return finished(mesh).solid; }
-
-/// Adds a mesh to another, in the same mesh.
-void append(Mesh& mesh, const Mesh& other, const glm::vec3& offset, float scale = 1.0F) {
-  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
-  for (const glm::vec3& p : other.positions) mesh.positions.push_back(p * scale + offset);
-  for (const glm::uvec3& t : other.triangles) mesh.triangles.push_back(t + base);
-}
 
 /// Two cubes from -1 to 1, the second one moved.
 Mesh two_cubes(const glm::vec3& offset) {
@@ -128,14 +122,7 @@ TEST(SolidMesh, ADentThatGoesThroughTheOtherSideIsFound) {
 }
 
 TEST(SolidMesh, TakesVerticesAtEqualPositionsAsOne) {
-  const Mesh cube = cube_mesh();
-  Mesh split;
-  for (const glm::uvec3& triangle : cube.triangles) {
-    const auto base = static_cast<std::uint32_t>(split.positions.size());
-    for (int i = 0; i < 3; ++i) split.positions.push_back(cube.positions[triangle[i]]);
-    split.triangles.emplace_back(base, base + 1, base + 2);
-  }
-  EXPECT_TRUE(solid(split));
+  EXPECT_TRUE(solid(with_split_vertices(cube_mesh())));
 }
 
 TEST(SolidMesh, PassesOverTrianglesThatAreCollapsed) {
