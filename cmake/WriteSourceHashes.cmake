@@ -21,7 +21,7 @@ function(hash_folders result)
   set(${result} "${hash}" PARENT_SCOPE)
 endfunction()
 
-set(layers common/geometry common/scene common/render common/culler)
+set(layers common/simd common/geometry common/scene common/spatial common/render common/culler)
 string(REPLACE "," ";" families "${FAMILIES}")
 string(REPLACE "," ";" truth_families "${TRUTH_FAMILIES}")
 set(entries "")

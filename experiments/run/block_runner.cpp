@@ -12,6 +12,7 @@
 #include "common/judge/path_truth.h"
 #include "common/render/osmesa_device.h"
 #include "common/scene/error.h"
+#include "common/simd/simd_target.h"
 #include "experiments/context/context.h"
 #include "experiments/context/sources.h"
 #include "experiments/run/block_judge.h"
@@ -157,7 +158,7 @@ class BlockRun {
     cell.key.seed = block_.seed;
     cell.key.device = block_.device;
     cell.key.threads = block_.threads;
-    cell.key.simd = "baseline";  // no culler dispatches at run time yet
+    cell.key.simd = simd_target();
     cell.key.sources = chain_source_hash(culler.chain);
     cell.key.replicate = culler.replicate;
     cell.culler = name;
