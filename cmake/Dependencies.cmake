@@ -8,6 +8,7 @@ find_package(assimp REQUIRED)
 find_package(meshoptimizer REQUIRED)
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE ON)  # solid meshes are small work in every build
 find_package(CGAL REQUIRED)
+find_package(Eigen3 3.3 REQUIRED CONFIG)  # for CGAL, whose own finder makes no target
 find_package(TBB REQUIRED)
 find_package(hwy REQUIRED)
 find_package(CLI11 REQUIRED)

@@ -2,33 +2,12 @@
 
 #include <cmath>
 
+#include "common/geometry/rounding.h"
+
 namespace vislab {
-namespace {
-
-float round_down(double value) {
-  const auto rounded = static_cast<float>(value);
-  return rounded > value ? std::nextafter(rounded, -std::numeric_limits<float>::infinity())
-                         : rounded;
-}
-
-float round_up(double value) {
-  const auto rounded = static_cast<float>(value);
-  return rounded < value ? std::nextafter(rounded, std::numeric_limits<float>::infinity())
-                         : rounded;
-}
-
-}  // namespace
-
 Plane plane_through(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const glm::dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
   return {normal, -glm::dot(normal, a), std::abs(a.x) + std::abs(a.y) + std::abs(a.z)};
-}
-
-bool Aabb::valid() const {
-  const glm::vec3 extent = max - min;  // infinite or NaN if any bound is
-  return min.x <= max.x && min.y <= max.y && min.z <= max.z && std::isfinite(extent.x) &&
-         std::isfinite(extent.y) && std::isfinite(extent.z) && std::isfinite(min.x) &&
-         std::isfinite(min.y) && std::isfinite(min.z);
 }
 
 bool Aabb::contains(const glm::dvec3& p) const {

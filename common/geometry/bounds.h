@@ -32,8 +32,14 @@ struct Aabb {
   glm::vec3 max{-std::numeric_limits<float>::infinity()};
 
   bool empty() const { return !(min.x <= max.x && min.y <= max.y && min.z <= max.z); }
-  /// All six numbers are finite and min <= max. A box that is not valid may never be culled.
-  bool valid() const;
+  /// All six numbers are finite, their differences too, and min <= max. A box that is not valid may
+  /// never be culled.
+  bool valid() const {
+    constexpr float greatest = std::numeric_limits<float>::max();
+    const glm::vec3 extent = max - min;  // infinite or NaN if any bound is
+    return min.x <= max.x && min.y <= max.y && min.z <= max.z && extent.x <= greatest &&
+           extent.y <= greatest && extent.z <= greatest;
+  }
   glm::dvec3 center() const { return (glm::dvec3(min) + glm::dvec3(max)) * 0.5; }
   glm::dvec3 half_size() const { return (glm::dvec3(max) - glm::dvec3(min)) * 0.5; }
   void extend(const glm::vec3& p) {

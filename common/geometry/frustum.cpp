@@ -1,33 +1,9 @@
 #include "common/geometry/frustum.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 namespace vislab {
 namespace {
 
 double absolute_sum(const glm::dvec3& p) { return std::abs(p.x) + std::abs(p.y) + std::abs(p.z); }
-
-/// Bound on the error of n.p + d in double for a point with float coordinates: the plane's own
-/// rounding (normal and d each carry a few ulp from the camera) and seven operations. Each part of
-/// the unit normal may be off by a few ulp of 1, however small it is itself: p counts in full.
-double distance_error(const Plane& plane, const glm::dvec3& p) {
-  const double magnitude = absolute_sum(p) + std::max(std::abs(plane.d), plane.magnitude);
-  return 16.0 * std::numeric_limits<double>::epsilon() * magnitude;
-}
-
-glm::dvec3 p_vertex(const Plane& plane, const Aabb& box) {
-  return {plane.normal.x >= 0.0 ? box.max.x : box.min.x,
-          plane.normal.y >= 0.0 ? box.max.y : box.min.y,
-          plane.normal.z >= 0.0 ? box.max.z : box.min.z};
-}
-
-glm::dvec3 n_vertex(const Plane& plane, const Aabb& box) {
-  return {plane.normal.x >= 0.0 ? box.min.x : box.max.x,
-          plane.normal.y >= 0.0 ? box.min.y : box.max.y,
-          plane.normal.z >= 0.0 ? box.min.z : box.max.z};
-}
 
 }  // namespace
 
@@ -91,22 +67,55 @@ Frustum frustum_from_matrix(const glm::dmat4& clip) {
   return frustum;
 }
 
-bool surely_outside(const Plane& plane, const Aabb& box) {
-  const glm::dvec3 p = p_vertex(plane, box);
-  // Written so that NaN bounds answer false: nothing is concluded from a broken box.
-  return box.valid() && plane.signed_distance(p) < -distance_error(plane, p);
-}
-
-bool surely_inside(const Plane& plane, const Aabb& box) {
-  const glm::dvec3 n = n_vertex(plane, box);
-  return box.valid() && plane.signed_distance(n) > distance_error(plane, n);
+Frustum frustum_by_corners(const Camera& camera) {
+  const auto& [eye, right, up, back] = camera.pose;
+  const Lens& lens = camera.lens;
+  const bool perspective = lens.projection == Projection::perspective;
+  const bool has_far = std::isfinite(lens.far_m);
+  const glm::dvec3 forward = -back;
+  const auto corner = [&](double x, double y, double distance) {
+    const double scale = perspective ? distance / lens.near_m : 1.0;
+    return eye + forward * distance + right * (x * scale) + up * (y * scale);
+  };
+  // The far corners define the planes best. Without them any distance beyond near will do.
+  const double far = has_far ? lens.far_m : lens.near_m + std::max(1.0, std::abs(lens.near_m));
+  const glm::dvec3 far_left_bottom = corner(lens.left, lens.bottom, far);
+  const glm::dvec3 far_left_top = corner(lens.left, lens.top, far);
+  const glm::dvec3 far_right_bottom = corner(lens.right, lens.bottom, far);
+  const glm::dvec3 far_right_top = corner(lens.right, lens.top, far);
+  const glm::dvec3 near_left_bottom = corner(lens.left, lens.bottom, lens.near_m);
+  const glm::dvec3 near_right_bottom = corner(lens.right, lens.bottom, lens.near_m);
+  const glm::dvec3 near_right_top = corner(lens.right, lens.top, lens.near_m);
+  // All side planes of a perspective camera meet in the eye.
+  const glm::dvec3 low = perspective ? eye : near_left_bottom;
+  const glm::dvec3 high = perspective ? eye : near_right_top;
+  Frustum frustum;
+  frustum.planes[Frustum::left] = plane_through(low, far_left_bottom, far_left_top);
+  frustum.planes[Frustum::right] = plane_through(high, far_right_top, far_right_bottom);
+  frustum.planes[Frustum::bottom] = plane_through(low, far_right_bottom, far_left_bottom);
+  frustum.planes[Frustum::top] = plane_through(high, far_left_top, far_right_top);
+  frustum.planes[Frustum::near] =
+      plane_through(near_left_bottom, near_right_top, near_right_bottom);
+  if (has_far) {
+    frustum.planes[Frustum::far] = plane_through(far_left_bottom, far_right_bottom, far_right_top);
+  } else {
+    frustum.plane_count = 5;
+  }
+  return frustum;
 }
 
 bool surely_outside(const Plane& plane, const Sphere& sphere) {
   const glm::dvec3 c(sphere.center);
   const double error =
       distance_error(plane, c) + std::numeric_limits<double>::epsilon() * sphere.radius;
-  return plane.signed_distance(c) + sphere.radius < -error;
+  return sphere.radius >= 0.0F && plane.signed_distance(c) + sphere.radius < -error;
+}
+
+bool surely_inside(const Plane& plane, const Sphere& sphere) {
+  const glm::dvec3 c(sphere.center);
+  const double error =
+      distance_error(plane, c) + std::numeric_limits<double>::epsilon() * sphere.radius;
+  return sphere.radius >= 0.0F && plane.signed_distance(c) - sphere.radius > error;
 }
 
 bool touches_near_region(const Camera& camera, const Aabb& box) {

@@ -1,7 +1,10 @@
 // View frusta as planes that point inward, and the conservative box and sphere tests on one plane.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <span>
 
 #include "common/geometry/bounds.h"
@@ -31,18 +34,60 @@ Frustum frustum_of(const Camera& camera);
 /// not known here, so "surely" below is sure only for planes of frustum_of.
 Frustum frustum_from_matrix(const glm::dmat4& clip);
 
-/// True only if every point of the box lies outside the plane, even under rounding: the p-vertex
-/// (the corner farthest along the normal) is behind the plane by more than the error of its
-/// distance. A box that is not valid is never outside.
+/// Bound on the error of n.p + d in double for a point with float coordinates: the plane's own
+/// rounding (normal and d each carry a few ulp from the camera) and seven operations. Each part of
+/// the unit normal may be off by a few ulp of 1, however small it is itself: p counts in full.
+inline double distance_error(const Plane& plane, const glm::dvec3& p) {
+  const double magnitude =
+      std::abs(p.x) + std::abs(p.y) + std::abs(p.z) + std::max(std::abs(plane.d), plane.magnitude);
+  return 16.0 * std::numeric_limits<double>::epsilon() * magnitude;
+}
+
+/// The corner of the box that lies farthest along the normal; the greater coordinate where a part
+/// of the normal is 0.
+inline glm::dvec3 p_vertex(const Plane& plane, const Aabb& box) {
+  return {plane.normal.x >= 0.0 ? box.max.x : box.min.x,
+          plane.normal.y >= 0.0 ? box.max.y : box.min.y,
+          plane.normal.z >= 0.0 ? box.max.z : box.min.z};
+}
+
+/// The corner opposite to the p-vertex.
+inline glm::dvec3 n_vertex(const Plane& plane, const Aabb& box) {
+  return {plane.normal.x >= 0.0 ? box.min.x : box.max.x,
+          plane.normal.y >= 0.0 ? box.min.y : box.max.y,
+          plane.normal.z >= 0.0 ? box.min.z : box.max.z};
+}
+
+/// True only if every point of the box lies outside the plane, even under rounding: the p-vertex is
+/// behind the plane by more than the error of its distance. A box that is not valid is never
+/// outside. The sign is asked first, so that most boxes that are kept cost one distance.
 /// Source: Assarsson and Moeller 2000 (lecture slides 37-38, with normals that point inward, so
 /// that "outside" asks the p-vertex).
-bool surely_outside(const Plane& plane, const Aabb& box);
+inline bool surely_outside(const Plane& plane, const Aabb& box) {
+  const glm::dvec3 p = p_vertex(plane, box);
+  const double distance = plane.signed_distance(p);
+  // Written so that NaN bounds answer false: nothing is concluded from a broken box.
+  return distance < 0.0 && distance < -distance_error(plane, p) && box.valid();
+}
 
 /// True only if every point of the box lies inside the plane: the n-vertex decides.
-bool surely_inside(const Plane& plane, const Aabb& box);
+inline bool surely_inside(const Plane& plane, const Aabb& box) {
+  const glm::dvec3 n = n_vertex(plane, box);
+  const double distance = plane.signed_distance(n);
+  return distance > 0.0 && distance > distance_error(plane, n) && box.valid();
+}
 
-/// True only if the whole sphere lies outside the plane, even under rounding.
+/// True only if the whole sphere lies outside (inside) the plane, even under rounding. A sphere
+/// whose radius is negative or not a number is neither.
 bool surely_outside(const Plane& plane, const Sphere& sphere);
+bool surely_inside(const Plane& plane, const Sphere& sphere);
+
+/// Planes through three corners each, as gluPerspective and gluLookAt suggest: the window's corners
+/// at the distance f are eye + f view +- half height * up +- half width * right. Also for lenses
+/// that are off-centre, orthographic or without a far plane. Equal to frustum_of but for rounding,
+/// which is larger far from the origin and not bounded by "surely" below. Source: Zachmann,
+/// Computer-Graphik 2, SS 2012, slide 34.
+Frustum frustum_by_corners(const Camera& camera);
 
 /// True if the box comes as near to the eye as the near plane's farthest corner does: the box may
 /// then be cut by the near plane or hold the eye, and nothing may be concluded from its faces.
