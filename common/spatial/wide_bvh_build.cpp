@@ -1,0 +1,306 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "common/spatial/wide_bvh.h"
+
+namespace vislab {
+namespace {
+
+constexpr std::uint32_t width = BoxBlock::width;
+
+/// A point that most centres are near, whatever few of them do: medians of a sample.
+glm::vec3 middle_of(std::span<const Aabb> boxes) {
+  constexpr std::size_t sample_size = 256;
+  const std::size_t stride = boxes.size() / sample_size + 1;
+  std::array<std::array<float, sample_size>, 3> sample;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < boxes.size(); i += stride) {
+    if (!boxes[i].valid()) continue;
+    const glm::dvec3 center = boxes[i].center();
+    for (int axis = 0; axis < 3; ++axis) {
+      sample[static_cast<std::size_t>(axis)][count] = static_cast<float>(center[axis]);
+    }
+    ++count;
+  }
+  glm::vec3 middle(0.0F);
+  if (count == 0) return middle;
+  for (int axis = 0; axis < 3; ++axis) {
+    auto& values = sample[static_cast<std::size_t>(axis)];
+    const auto half = values.begin() + static_cast<std::ptrdiff_t>(count / 2);
+    std::nth_element(values.begin(), half, values.begin() + static_cast<std::ptrdiff_t>(count));
+    middle[axis] = *half;
+  }
+  return middle;
+}
+
+/// How far from `origin` the tree is to reach: four times as far as what is in, a power of two.
+/// One object in 64 may be left out, if that shortens the reach to less than a 64th: float's margin
+/// grows with the reach.
+float reach_of(std::span<const Aabb> boxes, const glm::vec3& origin) {
+  // Counts by the binary exponent of the farthest coordinate.
+  constexpr int lowest = std::numeric_limits<float>::min_exponent;
+  constexpr int highest = std::numeric_limits<float>::max_exponent;
+  std::array<std::size_t, highest - lowest + 1> counts{};
+  std::size_t total = 0;
+  for (const Aabb& box : boxes) {
+    const glm::vec3 far = glm::max(glm::abs(box.min - origin), glm::abs(box.max - origin));
+    const float reach = std::max({far.x, far.y, far.z});
+    if (!box.valid() || !std::isfinite(reach)) continue;
+    ++counts[static_cast<std::size_t>(
+        std::max(reach > 0.0F ? std::ilogb(reach) + 1 : lowest, lowest) - lowest)];
+    ++total;
+  }
+  int exponent = highest;
+  while (exponent > lowest && counts[static_cast<std::size_t>(exponent - lowest)] == 0) --exponent;
+  std::size_t beyond = 0;
+  int shorter = exponent;
+  while (shorter > lowest) {
+    beyond += counts[static_cast<std::size_t>(shorter - lowest)];
+    if (beyond > total / 64) break;
+    --shorter;
+  }
+  if (shorter + 6 < exponent) exponent = shorter;
+  return std::ldexp(1.0F, std::min(exponent + 2, highest - 2));
+}
+
+}  // namespace
+
+/// Builds the nodes of one hierarchy. Friend of WideBvh.
+class WideBvhBuilder {
+ public:
+  explicit WideBvhBuilder(WideBvh& bvh) : bvh_(bvh) {}
+
+  /// Objects lie in items_ (median) or already in objects_ (Z curve), as leaves of eight.
+  void packed(bool medians) {
+    medians_ = medians;
+    const auto count = static_cast<std::uint32_t>(bvh_.objects_.size());
+    bvh_.nodes_.emplace_back();
+    bvh_.node_parent_.push_back(0);
+    std::uint64_t below_child = width;
+    while (below_child * width < count) below_child *= width;
+    fill_packed(0, 0, count, static_cast<std::uint32_t>(below_child));
+  }
+
+  void collapse(const SpatialStructure& tree, std::span<const Aabb> boxes) {
+    tree_ = &tree;
+    boxes_ = boxes;
+    count_objects(SpatialStructure::root);
+    bvh_.nodes_.emplace_back();
+    bvh_.node_parent_.push_back(0);
+    fill_collapsed(0, SpatialStructure::root);
+  }
+
+ private:
+  /// Adds the children of `node`: `inner` nodes, then `leaves` leaves.
+  void add_children(std::uint32_t node, std::uint32_t inner, std::uint32_t leaves) {
+    WideNode& at = bvh_.nodes_[node];
+    at.inner_count = inner;
+    at.child_count = inner + leaves;
+    at.first_inner = static_cast<std::uint32_t>(bvh_.nodes_.size());
+    at.first_leaf = static_cast<std::uint32_t>(bvh_.leaf_parent_.size());
+    for (std::uint32_t lane = 0; lane < inner; ++lane) {
+      bvh_.node_parent_.push_back(node * width + lane);
+    }
+    for (std::uint32_t lane = inner; lane < inner + leaves; ++lane) {
+      bvh_.leaf_parent_.push_back(node * width + lane);
+    }
+    bvh_.nodes_.resize(bvh_.nodes_.size() + inner);
+    bvh_.first_place_.resize(bvh_.leaf_parent_.size());
+  }
+
+  /// `below_child`: 8^k objects for each child but the last.
+  void fill_packed(std::uint32_t node, std::uint32_t begin, std::uint32_t end,
+                   std::uint32_t below_child) {
+    const std::uint32_t children = (end - begin + below_child - 1) / below_child;
+    if (medians_) divide(begin, end, children, below_child);
+    const bool leaves = below_child == width;
+    add_children(node, leaves ? 0 : children, leaves ? children : 0);
+    for (std::uint32_t lane = 0; lane <= children; ++lane) {
+      bvh_.nodes_[node].first[lane] = std::min(begin + lane * below_child, end);
+    }
+    for (std::uint32_t lane = 0; lane < children; ++lane) {
+      const std::uint32_t first = bvh_.nodes_[node].first[lane];
+      if (leaves) {
+        bvh_.first_place_[bvh_.nodes_[node].first_leaf + lane] = first;
+      } else {
+        fill_packed(bvh_.nodes_[node].first_inner + lane, first, bvh_.nodes_[node].first[lane + 1],
+                    below_child / width);
+      }
+    }
+  }
+
+  /// Halves the items until each child has its own.
+  void divide(std::uint32_t begin, std::uint32_t end, std::uint32_t children,
+              std::uint32_t below_child) {
+    if (children < 2) return;
+    const std::uint32_t left = children / 2;
+    const std::uint32_t middle = begin + left * below_child;
+    const auto first = bvh_.items_.begin();
+    Aabb centers;
+    for (std::uint32_t i = begin; i < end; ++i) centers.extend(bvh_.items_[i].center);
+    const glm::dvec3 size = centers.half_size();
+    const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
+    // Ids decide between equal centres: every library's nth_element then finds the same halves.
+    std::nth_element(first + begin, first + middle, first + end,
+                     [axis](const WideBvh::Item& a, const WideBvh::Item& b) {
+                       return a.center[axis] != b.center[axis] ? a.center[axis] < b.center[axis]
+                                                               : a.object < b.object;
+                     });
+    divide(begin, middle, left, below_child);
+    divide(middle, end, children - left, below_child);
+  }
+
+  std::uint32_t count_objects(std::uint32_t node) {
+    const SpatialNode& at = tree_->nodes()[node];
+    if (object_counts_.size() <= node) object_counts_.resize(tree_->nodes().size());
+    auto count = static_cast<std::uint32_t>(tree_->objects_at(node).size());
+    for (std::uint32_t i = 0; i < at.child_count; ++i) count += count_objects(at.first_child + i);
+    object_counts_[node] = count;
+    return count;
+  }
+
+  double half_area(std::uint32_t node) const {
+    const Aabb& box = tree_->nodes()[node].box;
+    if (box.empty()) return 0.0;
+    const glm::dvec3 size = box.half_size();
+    return size.x * size.y + size.y * size.z + size.z * size.x;
+  }
+
+  void add_objects(std::uint32_t node) {
+    const SpatialNode& at = tree_->nodes()[node];
+    for (const ObjectId object : tree_->objects_at(node)) {
+      if (bvh_.fits(boxes_[object])) bvh_.objects_.push_back(object);
+    }
+    for (std::uint32_t i = 0; i < at.child_count; ++i) add_objects(at.first_child + i);
+  }
+
+  /// Opens the largest descendant until there are eight that are leaves or too many for one.
+  void fill_collapsed(std::uint32_t node, std::uint32_t source) {
+    std::vector<std::uint32_t> open{source};
+    while (open.size() < width) {
+      std::size_t best = open.size();
+      for (std::size_t i = 0; i < open.size(); ++i) {
+        if (object_counts_[open[i]] <= width) continue;
+        if (best == open.size() || half_area(open[i]) > half_area(open[best])) best = i;
+      }
+      if (best == open.size()) break;
+      const SpatialNode& at = tree_->nodes()[open[best]];
+      if (at.child_count == 0) throw std::logic_error("wide BVH: a leaf has more than 8 objects");
+      if (open.size() - 1 + at.child_count > width) break;
+      open.erase(open.begin() + static_cast<std::ptrdiff_t>(best));
+      for (std::uint32_t i = 0; i < at.child_count; ++i) open.push_back(at.first_child + i);
+    }
+    const auto is_inner = [&](std::uint32_t child) { return object_counts_[child] > width; };
+    std::erase_if(open, [&](std::uint32_t child) { return object_counts_[child] == 0; });
+    std::stable_partition(open.begin(), open.end(), is_inner);
+    const auto inner = static_cast<std::uint32_t>(std::ranges::count_if(open, is_inner));
+    add_children(node, inner, static_cast<std::uint32_t>(open.size()) - inner);
+    for (std::uint32_t lane = 0; lane < open.size(); ++lane) {
+      bvh_.nodes_[node].first[lane] = static_cast<std::uint32_t>(bvh_.objects_.size());
+      if (lane < inner) {
+        fill_collapsed(bvh_.nodes_[node].first_inner + lane, open[lane]);
+      } else {
+        bvh_.first_place_[bvh_.nodes_[node].first_leaf + lane - inner] =
+            bvh_.nodes_[node].first[lane];
+        add_objects(open[lane]);
+      }
+    }
+    bvh_.nodes_[node].first[open.size()] = static_cast<std::uint32_t>(bvh_.objects_.size());
+  }
+
+  WideBvh& bvh_;
+  bool medians_ = false;
+  const SpatialStructure* tree_ = nullptr;
+  std::span<const Aabb> boxes_;
+  std::vector<std::uint32_t> object_counts_;  // by node of the tree
+};
+
+void WideBvh::start(std::span<const Aabb> boxes) {
+  origin_ = middle_of(boxes);
+  limit_ = reach_of(boxes, origin_);
+  nodes_.clear();
+  node_parent_.clear();
+  leaf_parent_.clear();
+  first_place_.clear();
+  objects_.clear();
+  apart_.clear();
+  apart_changed_ = false;
+  absent_count_ = 0;
+  slot_.assign(boxes.size(), nowhere);
+  state_.assign(boxes.size(), present);
+  // Memory for everything that later changes might need.
+  objects_.reserve(boxes.size() + width);
+  apart_.reserve(boxes.size());
+}
+
+void WideBvh::finish_build(std::span<const Aabb> boxes) {
+  const auto placed = static_cast<std::uint32_t>(objects_.size());
+  const std::size_t leaf_count = leaf_parent_.size();
+  first_place_.push_back(placed);
+  BoxBlock empty;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const float nothing = std::numeric_limits<float>::max();
+    empty.bounds[i].fill(i < 3 ? nothing : -nothing);
+  }
+  leaves_.assign(leaf_count, empty);
+  for (WideNode& node : nodes_) node.boxes = empty;
+  for (std::uint32_t leaf = 0; leaf < leaf_count; ++leaf) {
+    for (std::uint32_t place = first_place_[leaf]; place < first_place_[leaf + 1]; ++place) {
+      const ObjectId object = objects_[place];
+      slot_[object] = leaf * width + (place - first_place_[leaf]);
+      write_box(object, boxes[object]);
+    }
+  }
+  objects_.resize(placed + width, none_id);  // kernels read eight at once
+  for (ObjectId object = 0; object < boxes.size(); ++object) {
+    if (slot_[object] != nowhere) continue;
+    state_[object] |= apart | listed_apart;
+    apart_.push_back(object);
+  }
+  absent_bits_.assign(placed / 64 + 1, 0);
+  dirty_leaves_.assign(leaf_count / 64 + 1, 0);
+  dirty_nodes_.assign(nodes_.size() / 64 + 1, 0);
+  for (std::size_t leaf = 0; leaf < leaf_count; ++leaf) {
+    dirty_leaves_[leaf / 64] |= std::uint64_t{1} << (leaf % 64);
+  }
+  area_ = 0.0;
+  refit();
+  area_when_built_ = area_;
+}
+
+void WideBvh::build(std::span<const Aabb> boxes, Order order) {
+  start(boxes);
+  items_.clear();
+  Aabb centers;
+  for (ObjectId object = 0; object < boxes.size(); ++object) {
+    if (!fits(boxes[object])) continue;
+    // Relative to the origin no sum of two overflows.
+    const glm::vec3 center = ((boxes[object].min - origin_) + (boxes[object].max - origin_)) * 0.5F;
+    items_.push_back({center, object});
+    centers.extend(center);
+  }
+  if (order == Order::morton) {
+    const MortonGrid grid(centers);
+    keys_.clear();
+    for (const Item& item : items_) keys_.push_back({grid.code(item.center), item.object});
+    sort_by_code(keys_, key_scratch_);
+    for (const MortonKey& key : keys_) objects_.push_back(key.index);
+    WideBvhBuilder(*this).packed(false);
+  } else {
+    objects_.resize(items_.size());
+    WideBvhBuilder(*this).packed(true);
+    for (std::size_t i = 0; i < items_.size(); ++i) objects_[i] = items_[i].object;
+  }
+  finish_build(boxes);
+}
+
+void WideBvh::build(std::span<const Aabb> boxes, const SpatialStructure& tree) {
+  start(boxes);
+  WideBvhBuilder(*this).collapse(tree, boxes);
+  finish_build(boxes);
+}
+
+}  // namespace vislab
