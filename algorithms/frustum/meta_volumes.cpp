@@ -29,7 +29,8 @@ MetaVolumes::MetaVolumes(const Camera& camera) {
     const double x = scale * ((i & 1U) != 0 ? lens.right : lens.left);
     const double y = scale * ((i & 2U) != 0 ? lens.top : lens.bottom);
     ways[i] = right * x + up * y - back * distance;
-    magnitude = std::max(magnitude, absolute_sum(eye) + std::abs(x) + std::abs(y) + distance);
+    magnitude =
+        std::max(magnitude, absolute_sum(eye) + std::abs(x) + std::abs(y) + std::abs(distance));
   }
   const double error = 64.0 * epsilon * magnitude;
 
