@@ -99,19 +99,20 @@ ExactFrustum::ExactFrustum(const Camera& camera)
   const double height = std::max(std::abs(lens_.bottom), std::abs(lens_.top)) / near;
   (perspective ? slope_size_ : offset_size_) += width + height;
 
-  std::vector<glm::dvec3> edges{pose_.right, pose_.up};
+  std::array<glm::dvec3, 6> edges{pose_.right, pose_.up};
+  std::size_t edge_count = 2;
   if (perspective) {
     for (const double x : {lens_.left, lens_.right}) {
       for (const double y : {lens_.bottom, lens_.top}) {
-        edges.push_back(pose_.right * (x / near) + pose_.up * (y / near) - pose_.back);
+        edges[edge_count++] = pose_.right * (x / near) + pose_.up * (y / near) - pose_.back;
       }
     }
   } else {
-    edges.push_back(pose_.back);
+    edges[edge_count++] = pose_.back;
   }
   const glm::dmat3 box_axes(1.0);
   for (int i = 0; i < 3; ++i) add_axis(box_axes[i]);
-  for (const glm::dvec3& edge : edges) {
+  for (const glm::dvec3& edge : std::span(edges).first(edge_count)) {
     for (int i = 0; i < 3; ++i) {
       const glm::dvec3 direction = glm::cross(box_axes[i], edge);
       const double length = glm::length(direction);
@@ -137,7 +138,7 @@ void ExactFrustum::add_axis(const glm::dvec3& direction) {
     axis.offset_high = high;
     axis.slope_low = axis.slope_high = forward;
   }
-  axes_.push_back(axis);
+  axes_[axis_count_++] = axis;
 }
 
 bool ExactFrustum::separates(const Axis& axis, const glm::dvec3& center, const glm::dvec3& half,
@@ -180,7 +181,7 @@ Side ExactFrustum::side(const Aabb& box, std::uint64_t* axes_tested) const {
     const double error =
         16.0 * epsilon *
         (size + offset_size_ + slope_size_ * (std::abs(farthest) + std::abs(lens_.near_m)));
-    for (const Axis& axis : axes_) {
+    for (const Axis& axis : std::span(axes_).first(axis_count_)) {
       ++tested;
       if (separates(axis, center, half, farthest, error)) {
         side = Side::outside;

@@ -6,8 +6,9 @@
 // edge or a corner is `intersecting` for them. Only the exact test of boxes has no such cases.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <vector>
+#include <span>
 
 #include "common/geometry/bounds.h"
 #include "common/geometry/frustum.h"
@@ -78,7 +79,8 @@ class ExactFrustum {
   // of, metres, and of those that the slopes are sums of.
   double offset_size_ = 0.0;
   double slope_size_ = 1.0;
-  std::vector<Axis> axes_;
+  std::array<Axis, 3 + 3 * 6> axes_{};  // no allocation: it is made once a frame
+  std::size_t axis_count_ = 0;
 };
 
 }  // namespace vislab
