@@ -37,6 +37,8 @@ Scene random_field(std::uint64_t seed, std::size_t count) {
 TEST(FrustumFlat, KeepsExactlyTheBoxesThatNoPlaneExcludes) {
   const Scene scene = random_field(3, 2000);
   CullerRun run("frustum.flat", scene);
+  CullerRun by_id("frustum.flat[early_out=off]", scene);
+  CullerRun one_by_one("frustum.flat[kernel=scalar]", scene);
   Random random(4);
   for (int i = 0; i < 20; ++i) {
     Camera camera = camera_at({random.uniform(-20.0, 20.0), random.uniform(-20.0, 20.0), 0.5},
@@ -51,7 +53,11 @@ TEST(FrustumFlat, KeepsExactlyTheBoxesThatNoPlaneExcludes) {
           frustum.span(), [&](const Plane& plane) { return surely_outside(plane, box); });
       if (!outside) expected.push_back(object);
     }
-    EXPECT_EQ(run.objects(camera), expected) << "camera " << i;
+    for (CullerRun* flat : {&run, &by_id, &one_by_one}) {
+      std::vector<ObjectId> kept = flat->objects(camera);
+      std::ranges::sort(kept);
+      EXPECT_EQ(kept, expected) << "camera " << i;
+    }
     EXPECT_GT(expected.size(), 0U);
     EXPECT_LT(expected.size(), scene.object_count());
   }
@@ -62,8 +68,10 @@ TEST(FrustumFlat, TheSphereKeepsAllThatTheBoxKeepsAndMore) {
   CullerRun boxes("frustum.flat", scene);
   CullerRun spheres("frustum.flat[test=sphere]", scene);
   const Camera camera = camera_at({0.0, 0.0, 25.0}, {5.0, 1.0, 0.0});
-  const std::vector<ObjectId> by_box = boxes.objects(camera);
-  const std::vector<ObjectId> by_sphere = spheres.objects(camera);
+  std::vector<ObjectId> by_box = boxes.objects(camera);
+  std::vector<ObjectId> by_sphere = spheres.objects(camera);
+  std::ranges::sort(by_box);
+  std::ranges::sort(by_sphere);
   EXPECT_TRUE(std::ranges::includes(by_sphere, by_box));
   EXPECT_GT(by_sphere.size(), by_box.size());
 }
@@ -71,7 +79,8 @@ TEST(FrustumFlat, TheSphereKeepsAllThatTheBoxKeepsAndMore) {
 TEST(FrustumFlat, FollowsMovedObjectsAndForgetsThemOnReset) {
   const Scene scene = cubes_at({{0.0, 0.0, 0.0}, {100.0, 0.0, 0.0}});
   const Camera camera = camera_at({0.0, 0.0, 10.0}, {0.0, 0.0, 0.0});
-  for (const char* spec : {"frustum.flat", "frustum.flat[test=sphere]"}) {
+  for (const char* spec :
+       {"frustum.flat", "frustum.flat[early_out=off]", "frustum.flat[test=sphere]"}) {
     CullerRun run(spec, scene);
     EXPECT_EQ(run.objects(camera), std::vector<ObjectId>{0}) << spec;
     run.update(camera, {{0, 1}, {placed({0.0, 50.0, 0.0}), placed({1.0, 0.0, 0.0})}, {}, {}});
@@ -90,21 +99,54 @@ TEST(FrustumFlat, TestsOnlyWhatIsShown) {
   EXPECT_EQ(run.counter("objects_tested"), 2U);
 }
 
+TEST(FrustumFlat, TestsWhatALaterStageIsOfferedInItsOrder) {
+  const Scene scene = random_field(9, 3000);
+  const Camera camera = camera_at({0.0, 0.0, 25.0}, {5.0, 1.0, 0.0});
+  CullerRun one_by_one("frustum.flat[kernel=scalar]", scene);
+  for (const char* spec : {"frustum.flat", "frustum.flat[early_out=off]"}) {
+    CullerRun run(spec, scene);
+    for (const std::size_t count : {0, 1, 40, 2000}) {
+      std::vector<ObjectId> offered;
+      for (std::size_t i = 0; i < count; ++i) {
+        offered.push_back(static_cast<ObjectId>((i * 1009 + 5) % scene.object_count()));
+      }
+      const std::span<const ObjectId> all(offered);
+      const std::array runs{all.first(count / 3), all.subspan(count / 3)};
+      const std::uint64_t before = run.counter("objects_tested");
+      EXPECT_EQ(run.objects(camera, Candidates::of(runs)),
+                one_by_one.objects(camera, Candidates::of(runs)))
+          << spec << ", " << count;
+      EXPECT_EQ(run.counter("objects_tested") - before, count);
+    }
+  }
+}
+
+TEST(FrustumFlat, ShortListsCostNoMoreThanTheirLength) {
+  const Scene scene = random_field(9, 3000);
+  const Camera camera = camera_at({0.0, 0.0, 25.0}, {5.0, 1.0, 0.0});
+  CullerRun run("frustum.flat", scene);
+  const std::array<ObjectId, 3> few{7, 11, 13};
+  const std::array<std::span<const ObjectId>, 1> runs{few};
+  run.objects(camera, Candidates::of(runs));
+  EXPECT_LE(run.counter("plane_tests"), 18U);
+}
+
 TEST(FrustumFlat, StopsAtTheFirstPlaneThatExcludes) {
   const Camera camera = camera_at({0.0, 0.0, 10.0}, {0.0, 0.0, 0.0});
   const Scene inside = cubes_at({{0.0, 0.0, 0.0}});
-  CullerRun six("frustum.flat", inside);
+  const std::string one_by_one = "frustum.flat[kernel=scalar]";
+  CullerRun six(one_by_one, inside);
   six.objects(camera);
   EXPECT_EQ(six.counter("plane_tests"), 6U);
 
   Camera endless = camera;
   endless.lens.far_m = std::numeric_limits<double>::infinity();
-  CullerRun five("frustum.flat", inside);
+  CullerRun five(one_by_one, inside);
   five.objects(endless);
   EXPECT_EQ(five.counter("plane_tests"), 5U);
 
   const Scene far_left = cubes_at({{-100.0, 0.0, 0.0}});
-  CullerRun one("frustum.flat", far_left);
+  CullerRun one(one_by_one, far_left);
   EXPECT_TRUE(one.objects(camera).empty());
   EXPECT_EQ(one.counter("plane_tests"), 1U);
 }
@@ -113,6 +155,7 @@ TEST(FrustumFlat, NeverLeavesOutABrokenBox) {
   const Scene scene = cubes_at({{-100.0, 0.0, 0.0}});
   const Camera camera = camera_at({0.0, 0.0, 10.0}, {0.0, 0.0, 0.0});
   CullerRun run("frustum.flat", scene);
+  EXPECT_TRUE(run.objects(camera).empty());
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   for (const float broken : {nan, -infinity}) {
@@ -122,6 +165,7 @@ TEST(FrustumFlat, NeverLeavesOutABrokenBox) {
     frame.objects.bounds = {&box, 1};
     RecordingSink sink;
     sink.start(scene, frame);
+    run.culler().update(frame, {{0}, {scene.objects[0].transform}, {}, {}});
     run.culler().cull(frame, Candidates::everything(), sink);
     EXPECT_EQ(sink.emitted().size(), 1U) << broken;
   }
