@@ -26,10 +26,10 @@ Aabb root_cube(const Aabb& box) {
   const double half = std::max({edges.x, edges.y, edges.z});
   Aabb cube = box;
   for (int axis = 0; axis < 3; ++axis) {
-    cube.min[axis] = std::min(box.min[axis], static_cast<float>(std::max<double>(
-                                                 center[axis] - half, -largest)));
-    cube.max[axis] = std::max(box.max[axis], static_cast<float>(std::min<double>(
-                                                 center[axis] + half, largest)));
+    cube.min[axis] = std::min(box.min[axis],
+                              static_cast<float>(std::max<double>(center[axis] - half, -largest)));
+    cube.max[axis] =
+        std::max(box.max[axis], static_cast<float>(std::min<double>(center[axis] + half, largest)));
   }
   return cube;
 }
