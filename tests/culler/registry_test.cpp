@@ -39,13 +39,15 @@ TEST(Registry, DoesNotTakeANameTwice) {
 
 TEST(Registry, GivesEqualChainsEqualKeys) {
   const Registry registry = all_cullers();
-  const std::string key = "frustum.flat[test=box] > occlusion.stop_and_wait[threshold_px=7]";
+  const std::string key =
+      "backface.polygon[open=two_sided] > occlusion.stop_and_wait[threshold_px=7]";
   for (const char* spec :
-       {"frustum.flat>occlusion.stop_and_wait[threshold_px=7]",
-        " frustum.flat[test=box]  >  occlusion.stop_and_wait[threshold_px=007] ",
-        "frustum.flat[ test = box ] > occlusion.stop_and_wait[threshold_px= 7]"}) {
+       {"backface.polygon>occlusion.stop_and_wait[threshold_px=7]",
+        " backface.polygon[open=two_sided]  >  occlusion.stop_and_wait[threshold_px=007] ",
+        "backface.polygon[ open = two_sided ] > occlusion.stop_and_wait[threshold_px= 7]"}) {
     EXPECT_EQ(registry.canonical(spec), key);
-    EXPECT_EQ(registry.short_name(spec), "frustum.flat > occlusion.stop_and_wait[threshold_px=7]");
+    EXPECT_EQ(registry.short_name(spec),
+              "backface.polygon > occlusion.stop_and_wait[threshold_px=7]");
   }
   EXPECT_EQ(registry.canonical(key), key);
 }
@@ -61,10 +63,11 @@ TEST(Registry, RefusesAnUnknownCullerWithTheKnownNames) {
 
 TEST(Registry, RefusesMalformedText) {
   for (const char* spec :
-       {"", " ", ">", "none >", "> none", "none > > none", "frustum.flat[", "frustum.flat[test=box",
-        "frustum.flat]", "frustum.flat[test]", "frustum.flat[test=box]x",
-        "frustum.flat[test=box,test=box]", "frustum.flat[[test=box]]", "frustum.flat[,]", "a b",
-        "frustum.flat[=box]", "frustum.flat[test=]", "[test=box]", "frustum.flat[]"}) {
+       {"", " ", ">", "none >", "> none", "none > > none", "frustum.flat[",
+        "frustum.flat[test=vertex", "frustum.flat]", "frustum.flat[test]",
+        "frustum.flat[test=vertex]x", "frustum.flat[test=vertex,test=vertex]",
+        "frustum.flat[[test=vertex]]", "frustum.flat[,]", "a b", "frustum.flat[=box]",
+        "frustum.flat[test=]", "[test=vertex]", "frustum.flat[]"}) {
     EXPECT_NE(refusal(spec), "") << "'" << spec << "' was taken";
   }
 }

@@ -56,7 +56,7 @@ TEST_F(MatrixFile, EveryBlockHasNoneTwiceAndBothOraclesOnce) {
 
 TEST_F(MatrixFile, SpellingsOfOneChainAreOneCell) {
   const Matrix matrix = load(
-      "[lists]\nculler = [\"frustum.flat\", \"frustum.flat[test=box]\", \" frustum.flat \"]\n"
+      "[lists]\nculler = [\"frustum.flat\", \"frustum.flat[test=vertex]\", \" frustum.flat \"]\n"
       "scene = [\"a\"]\n");
   EXPECT_EQ(matrix.blocks.at(0).cullers.size(), 5U);
 }
