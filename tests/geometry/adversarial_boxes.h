@@ -33,7 +33,10 @@ inline Camera adversarial_camera(Random& random) {
   const glm::dvec3 eye =
       random.below(4) == 0 ? glm::dvec3(0.0) : random_vector(random, log_uniform(random, 1.0, 1e8));
   const glm::dvec3 view = random_vector(random, 1.0);
-  if (random.below(8) == 0) {
+  const bool at_origin = random.below(4) == 0;
+  if (at_origin) {
+    camera.pose = look_at(eye + view, view * 0.1, random_vector(random, 1.0));
+  } else if (random.below(8) == 0) {
     camera.pose.eye = eye;
   } else {
     // As far as the eye: what is near to it would leave no digits for the direction.
@@ -42,7 +45,8 @@ inline Camera adversarial_camera(Random& random) {
     camera.pose = look_at(eye, eye + view * reach, up);
   }
   const double near = log_uniform(random, 1e-3, 10.0);
-  const double far = near * log_uniform(random, 1.5, 1e6);
+  double far = near * log_uniform(random, 1.5, 1e6);
+  if (at_origin) far = std::max(far, 2.0 * glm::length(camera.pose.eye));
   const double aspect = log_uniform(random, 0.3, 3.0);
   const double fov =
       random.below(4) == 0 ? log_uniform(random, 1e-3, 0.1) : random.uniform(0.1, 3.05);
@@ -66,6 +70,11 @@ inline Camera adversarial_camera(Random& random) {
     default:
       camera.lens = perspective_lens(fov, aspect, near, far);
   }
+  // A plane through the middle of the view passes the origin: its d is a small rest of large terms.
+  if (at_origin && random.below(2) == 0) camera.lens.left = 0.0;
+  if (at_origin && random.below(2) == 0) camera.lens.bottom = 0.0;
+  if (camera.lens.right <= camera.lens.left) camera.lens.right = camera.lens.left + near;
+  if (camera.lens.top <= camera.lens.bottom) camera.lens.top = camera.lens.bottom + near;
   return camera;
 }
 
@@ -98,8 +107,10 @@ inline Aabb adversarial_box(Random& random, const Camera& camera) {
   const double x = coordinate();
   const double y = coordinate();
   const std::uint64_t depth_choice = random.below(6);
+  const double of_origin = camera.planar_depth(glm::dvec3(0.0));
   const double depth = depth_choice == 0   ? lens.near_m
                        : depth_choice == 1 ? far
+                       : depth_choice == 2 && of_origin > lens.near_m && of_origin < far ? of_origin
                        : lens.near_m > 0.0 ? log_uniform(random, lens.near_m, far)
                                            : random.uniform(lens.near_m, far);
   glm::dvec3 anchor = frustum_point(camera, x, y, depth);
@@ -197,6 +208,53 @@ inline Aabb adversarial_box(Random& random, const Camera& camera) {
     box.max[axis] = std::max(a, b);
   }
   return box;
+}
+
+/// The camera moved so that the box touches its frustum as nearly as double allows, from outside of
+/// a plane, from inside or beyond an edge; unmoved where that is billions of metres away.
+inline Camera touching_camera(Random& random, Camera camera, const Aabb& box) {
+  const Pose& pose = camera.pose;
+  const Lens& lens = camera.lens;
+  const double far = std::isfinite(lens.far_m) ? lens.far_m : 1e6 * lens.near_m;
+  const Frustum frustum = frustum_of(camera);
+  const Plane& plane =
+      frustum.planes[random.below(static_cast<std::uint64_t>(frustum.plane_count))];
+  glm::dvec3 away = -plane.normal;  // from the frustum to the box
+  double gap = 0.0;
+  const std::uint64_t choice = random.below(3);
+  if (choice == 0) {
+    gap = -plane.signed_distance(p_vertex(plane, box));
+  } else if (choice == 1) {
+    gap = -plane.signed_distance(n_vertex(plane, box));
+  } else {
+    const double x = random.below(2) == 0 ? -1.0 : 1.0;
+    const double y = random.below(2) == 0 ? -1.0 : 1.0;
+    const std::array<glm::dvec3, 3> edges{
+        pose.right, pose.up,
+        frustum_point(camera, x, y, lens.near_m + 1.0) - frustum_point(camera, x, y, lens.near_m)};
+    glm::dvec3 box_axis(0.0);
+    box_axis[static_cast<int>(random.below(3))] = random.below(2) == 0 ? -1.0 : 1.0;
+    const glm::dvec3 normal = glm::cross(box_axis, edges[random.below(3)]);
+    if (glm::length(normal) < 1e-9) return camera;
+    away = glm::normalize(normal);
+    double reach = -std::numeric_limits<double>::infinity();
+    for (const double corner_x : {-1.0, 1.0}) {
+      for (const double corner_y : {-1.0, 1.0}) {
+        for (const double depth : {lens.near_m, far}) {
+          reach = std::max(reach, glm::dot(away, frustum_point(camera, corner_x, corner_y, depth)));
+        }
+      }
+    }
+    gap = glm::dot(away, n_vertex(Plane{away, 0.0}, box)) - reach;
+  }
+  if (!(std::abs(gap) < 1e9)) return camera;
+  camera.pose.eye += away * gap;
+  const auto axis = static_cast<int>(random.below(3));
+  const double to = random.below(2) == 0 ? -1e300 : 1e300;
+  for (std::uint64_t steps = random.below(3); steps > 0; --steps) {
+    camera.pose.eye[axis] = std::nextafter(camera.pose.eye[axis], to);
+  }
+  return camera;
 }
 
 }  // namespace vislab::test

@@ -152,8 +152,11 @@ std::vector<Extent> extents_of(const Hull& hull, const std::vector<Exact>& norma
 struct ExactJudge::Frusta {
   glm::dvec3 eye;
   std::vector<HalfSpace> planes;
+  Camera camera;
   std::vector<Extent> plane_extents;  // of the frustum that the planes bound
   std::vector<Extent> ray_extents;    // of the frustum that the corner rays span
+
+  void find_extents();  // of both, when they are first asked for
 
   /// Distance of a point from a plane, times the length of its normal.
   template <typename Number>
@@ -279,34 +282,16 @@ struct ExactJudge::Frusta {
   }
 };
 
-ExactJudge::ExactJudge(const Camera& camera) : frusta_(std::make_unique<Frusta>()) {
+void ExactJudge::Frusta::find_extents() {
+  if (!plane_extents.empty()) return;
   const Lens& lens = camera.lens;
   const Exact right = vector_of<Rational>(camera.pose.right);
   const Exact up = vector_of<Rational>(camera.pose.up);
   const Exact forward = vector_of<Rational>(-camera.pose.back);
+  const Rational forward_squared = dot(forward, forward);
   const bool perspective = lens.projection == Projection::perspective;
   const bool has_far = std::isfinite(lens.far_m);
   const Rational near(lens.near_m);
-  frusta_->eye = camera.pose.eye;
-
-  std::vector<HalfSpace>& planes = frusta_->planes;
-  const auto add_plane = [&](const Exact& normal, const Rational& offset) {
-    planes.push_back({Direction(normal), Value(offset)});
-  };
-  const auto add_side = [&](const Exact& axis, double low, double high) {
-    if (perspective) {
-      add_plane(axis * near + forward * Rational(-low), Rational(0));
-      add_plane(axis * -near + forward * Rational(high), Rational(0));
-    } else {
-      add_plane(axis, dot(axis, axis) * Rational(low));
-      add_plane(axis * Rational(-1), dot(axis, axis) * Rational(-high));
-    }
-  };
-  add_side(right, lens.left, lens.right);
-  add_side(up, lens.bottom, lens.top);
-  const Rational forward_squared = dot(forward, forward);
-  add_plane(forward, forward_squared * near);
-  if (has_far) add_plane(forward * Rational(-1), forward_squared * Rational(-lens.far_m));
 
   // The frustum of the planes: each edge along the view is where two sides meet.
   Hull of_planes;
@@ -353,7 +338,7 @@ ExactJudge::ExactJudge(const Camera& camera) : frusta_(std::make_unique<Frusta>(
   }
   std::vector<Exact> plane_normals;
   for (const HalfSpace& plane : planes) plane_normals.push_back(plane.normal.exact);
-  frusta_->plane_extents = extents_of(of_planes, plane_normals, plane_edges);
+  plane_extents = extents_of(of_planes, plane_normals, plane_edges);
   // The faces between the rays left bottom, left top, right bottom, right top.
   std::vector<Exact> ray_normals{cross(right, up)};
   const auto between = [&](std::size_t i, std::size_t j) {
@@ -364,7 +349,38 @@ ExactJudge::ExactJudge(const Camera& camera) : frusta_(std::make_unique<Frusta>(
   between(0, 2);
   between(1, 3);
   between(2, 3);
-  frusta_->ray_extents = extents_of(of_rays, ray_normals, ray_edges);
+  ray_extents = extents_of(of_rays, ray_normals, ray_edges);
+}
+
+ExactJudge::ExactJudge(const Camera& camera) : frusta_(std::make_unique<Frusta>()) {
+  const Lens& lens = camera.lens;
+  const Exact right = vector_of<Rational>(camera.pose.right);
+  const Exact up = vector_of<Rational>(camera.pose.up);
+  const Exact forward = vector_of<Rational>(-camera.pose.back);
+  const bool perspective = lens.projection == Projection::perspective;
+  const bool has_far = std::isfinite(lens.far_m);
+  const Rational near(lens.near_m);
+  frusta_->eye = camera.pose.eye;
+  frusta_->camera = camera;
+
+  std::vector<HalfSpace>& planes = frusta_->planes;
+  const auto add_plane = [&](const Exact& normal, const Rational& offset) {
+    planes.push_back({Direction(normal), Value(offset)});
+  };
+  const auto add_side = [&](const Exact& axis, double low, double high) {
+    if (perspective) {
+      add_plane(axis * near + forward * Rational(-low), Rational(0));
+      add_plane(axis * -near + forward * Rational(high), Rational(0));
+    } else {
+      add_plane(axis, dot(axis, axis) * Rational(low));
+      add_plane(axis * Rational(-1), dot(axis, axis) * Rational(-high));
+    }
+  };
+  add_side(right, lens.left, lens.right);
+  add_side(up, lens.bottom, lens.top);
+  const Rational forward_squared = dot(forward, forward);
+  add_plane(forward, forward_squared * near);
+  if (has_far) add_plane(forward * Rational(-1), forward_squared * Rational(-lens.far_m));
 }
 
 ExactJudge::~ExactJudge() = default;
@@ -383,6 +399,7 @@ bool ExactJudge::inside(const Sphere& sphere) const { return frusta_->inside_of_
 bool ExactJudge::inside(const OrientedBox& box) const { return frusta_->inside_of_all(box); }
 
 bool ExactJudge::disjoint(const Aabb& box) const {
+  frusta_->find_extents();
   return frusta_->disjoint(frusta_->plane_extents, box) &&
          frusta_->disjoint(frusta_->ray_extents, box);
 }
@@ -410,6 +427,7 @@ bool ExactJudge::clearly_inside(const Aabb& box, double margin) const {
 }
 
 bool ExactJudge::clearly_disjoint(const Aabb& box, double margin) const {
+  frusta_->find_extents();
   const Rounding rounding;
   for (const Extent& extent : frusta_->plane_extents) {
     const double least = margin * extent.axis.length;

@@ -13,8 +13,8 @@ namespace vislab::test {
 /// (right * near - forward * left) . (p - eye) >= 0 and so on, of any length. Touching is neither
 /// outside nor disjoint, and is inside. Volumes must be valid.
 ///
-/// Intervals decide first, rational numbers what they leave open. Making a judge costs about a
-/// millisecond.
+/// Intervals decide first, rational numbers what they leave open. Asking for disjointness first
+/// costs about a millisecond. Not for several threads at once.
 class ExactJudge {
  public:
   explicit ExactJudge(const Camera& camera);

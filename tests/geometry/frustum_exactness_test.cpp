@@ -17,12 +17,16 @@ namespace {
 using test::adversarial_box;
 using test::adversarial_camera;
 using test::ExactJudge;
+using test::touching_camera;
 
 #ifdef __SANITIZE_ADDRESS__
 constexpr int camera_count = 400;  // the sanitizers take ten times as long
+constexpr int touching_count = 2'000;
 #else
 constexpr int camera_count = 4'100;
+constexpr int touching_count = 20'000;
 #endif
+constexpr int clear_camera_count = 400;
 constexpr int boxes_per_camera = 250;
 
 std::string name_of(Side side) {
@@ -97,12 +101,13 @@ class FrustumExactness : public testing::Test {
     std::uint64_t inside = 0;
   };
 
-  /// Calls check(judge, camera, exact test, box, random) for all cameras and boxes.
+  /// Calls check(judge, camera, exact test, box, random) for all cameras and boxes, and for each
+  /// box that a camera was moved to.
   template <typename Check>
-  void for_all(std::uint64_t seed, Check check) {
+  void for_all(std::uint64_t seed, int cameras, int touching, Check check) {
     Random random(seed);
     std::uint64_t boxes = 0;
-    for (int i = 0; i < camera_count && !HasFailure(); ++i) {
+    for (int i = 0; i < cameras && !HasFailure(); ++i) {
       const Camera camera = adversarial_camera(random);
       const ExactJudge judge(camera);
       const ExactFrustum exact(camera);
@@ -114,7 +119,14 @@ class FrustumExactness : public testing::Test {
         if (HasFailure()) break;
       }
     }
-    std::cout << boxes << " boxes before " << camera_count << " cameras\n";
+    for (int i = 0; i < touching && !HasFailure(); ++i) {
+      const Camera before = adversarial_camera(random);
+      const Aabb box = adversarial_box(random, before);
+      const Camera camera = touching_camera(random, before, box);
+      check(ExactJudge(camera), camera, ExactFrustum(camera), box, random);
+    }
+    std::cout << boxes << " boxes before " << cameras << " cameras, " << touching
+              << " cameras moved to a box\n";
   }
 
   /// `outside` and `inside` must be true by the judge.
@@ -140,33 +152,34 @@ class FrustumExactness : public testing::Test {
 TEST_F(FrustumExactness, TestsSayOutsideAndInsideOnlyWhereItIsTrueInExactArithmetic) {
   Counts by_corners, by_vertices, by_sphere, by_oriented_box, by_exact_test;
   std::uint64_t beyond_planes = 0;  // outside, but not of a plane
-  for_all(1, [&](const ExactJudge& judge, const Camera& camera, const ExactFrustum& exact,
-                 const Aabb& box, Random& random) {
-    const Frustum& frustum = exact.planes();
-    const Side corners = side_by_corners(frustum, box);
-    const Side vertices = side_by_vertices(frustum, box);
-    expect_true(vertices, "the n-/p-vertex test", judge, camera, box, box, by_vertices);
-    expect_true(corners, "the test of corners", judge, camera, box, box, by_corners);
-    const Sphere sphere = touching_sphere(random, camera, box);
-    expect_true(side_of(frustum, sphere), "the test of spheres", judge, camera, box, sphere,
-                by_sphere);
-    const OrientedBox any = touching_box(random, camera, box);
-    expect_true(side_of(frustum, any), "the test of oriented boxes", judge, camera, box, any,
-                by_oriented_box);
+  for_all(1, camera_count, touching_count,
+          [&](const ExactJudge& judge, const Camera& camera, const ExactFrustum& exact,
+              const Aabb& box, Random& random) {
+            const Frustum& frustum = exact.planes();
+            const Side corners = side_by_corners(frustum, box);
+            const Side vertices = side_by_vertices(frustum, box);
+            expect_true(vertices, "the n-/p-vertex test", judge, camera, box, box, by_vertices);
+            expect_true(corners, "the test of corners", judge, camera, box, box, by_corners);
+            const Sphere sphere = touching_sphere(random, camera, box);
+            expect_true(side_of(frustum, sphere), "the test of spheres", judge, camera, box, sphere,
+                        by_sphere);
+            const OrientedBox any = touching_box(random, camera, box);
+            expect_true(side_of(frustum, any), "the test of oriented boxes", judge, camera, box,
+                        any, by_oriented_box);
 
-    const Side side = exact.side(box);
-    by_exact_test.outside += side == Side::outside ? 1 : 0;
-    by_exact_test.inside += side == Side::inside ? 1 : 0;
-    if (side == Side::outside) {
-      EXPECT_TRUE(judge.disjoint(box)) << "the exact test says outside\n"
-                                       << description_of(camera, box);
-    }
-    beyond_planes += side == Side::outside && vertices != Side::outside ? 1 : 0;
-    // What the planes are sure of the exact test is sure of too.
-    EXPECT_EQ(side == Side::inside, vertices == Side::inside);
-    EXPECT_TRUE(vertices != Side::outside || side == Side::outside);
-    EXPECT_TRUE(corners == Side::intersecting || corners == vertices);
-  });
+            const Side side = exact.side(box);
+            by_exact_test.outside += side == Side::outside ? 1 : 0;
+            by_exact_test.inside += side == Side::inside ? 1 : 0;
+            if (side == Side::outside) {
+              EXPECT_TRUE(judge.disjoint(box)) << "the exact test says outside\n"
+                                               << description_of(camera, box);
+            }
+            beyond_planes += side == Side::outside && vertices != Side::outside ? 1 : 0;
+            // What the planes are sure of the exact test is sure of too.
+            EXPECT_EQ(side == Side::inside, vertices == Side::inside);
+            EXPECT_TRUE(vertices != Side::outside || side == Side::outside);
+            EXPECT_TRUE(corners == Side::intersecting || corners == vertices);
+          });
   print("corners", by_corners);
   print("vertices", by_vertices);
   print("sphere", by_sphere);
@@ -178,23 +191,24 @@ TEST_F(FrustumExactness, TestsSayOutsideAndInsideOnlyWhereItIsTrueInExactArithme
 
 TEST_F(FrustumExactness, TestsDecideWhateverIsClear) {
   std::uint64_t disjoint = 0;
-  for_all(2, [&](const ExactJudge& judge, const Camera& camera, const ExactFrustum& exact,
-                 const Aabb& box, Random&) {
-    const double margin = margin_of(camera, box);
-    const Side vertices = side_by_vertices(exact.planes(), box);
-    const Side corners = side_by_corners(exact.planes(), box);
-    if (judge.clearly_outside_of_a_plane(box, margin)) {
-      EXPECT_EQ(vertices, Side::outside) << description_of(camera, box);
-    }
-    if (judge.clearly_inside(box, margin)) {
-      EXPECT_EQ(vertices, Side::inside) << description_of(camera, box);
-      EXPECT_EQ(corners, Side::inside) << description_of(camera, box);
-    }
-    if (judge.clearly_disjoint(box, margin)) {
-      ++disjoint;
-      EXPECT_EQ(exact.side(box), Side::outside) << description_of(camera, box);
-    }
-  });
+  for_all(2, clear_camera_count, 0,
+          [&](const ExactJudge& judge, const Camera& camera, const ExactFrustum& exact,
+              const Aabb& box, Random&) {
+            const double margin = margin_of(camera, box);
+            const Side vertices = side_by_vertices(exact.planes(), box);
+            const Side corners = side_by_corners(exact.planes(), box);
+            if (judge.clearly_outside_of_a_plane(box, margin)) {
+              EXPECT_EQ(vertices, Side::outside) << description_of(camera, box);
+            }
+            if (judge.clearly_inside(box, margin)) {
+              EXPECT_EQ(vertices, Side::inside) << description_of(camera, box);
+              EXPECT_EQ(corners, Side::inside) << description_of(camera, box);
+            }
+            if (judge.clearly_disjoint(box, margin)) {
+              ++disjoint;
+              EXPECT_EQ(exact.side(box), Side::outside) << description_of(camera, box);
+            }
+          });
   std::cout << disjoint << " boxes are clear of the frustum\n";
   EXPECT_GT(disjoint, 0U);
 }
