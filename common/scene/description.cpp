@@ -1,5 +1,7 @@
 #include "common/scene/description.h"
 
+#include <algorithm>
+#include <bit>
 #include <limits>
 
 #include "common/scene/error.h"
@@ -48,6 +50,29 @@ HaresSource read_hares(const Settings& table) {
   return hares;
 }
 
+AsteroidBeltParameters read_asteroid_belt(const Settings& table) {
+  AsteroidBeltParameters belt;
+  belt.count = count_of(table, "count", 1, 1'000'000);
+  belt.detail = static_cast<std::uint32_t>(table.whole("detail", 4, 512, belt.detail));
+  if (!std::has_single_bit(belt.detail)) {
+    throw InputError(table.where() +
+                     ": `detail` is wrong; it must be a power of two from 4 to 512");
+  }
+  belt.shapes = static_cast<std::uint32_t>(table.whole("shapes", 1, 10'000, belt.shapes));
+  belt.radius_m = table.number("radius_m", 1e-3, huge, belt.radius_m);
+  belt.width_m =
+      table.number("width_m", 0.0, 1.99 * belt.radius_m, std::min(belt.width_m, belt.radius_m));
+  belt.thickness_m = table.number("thickness_m", 0.0, huge, belt.thickness_m);
+  belt.height_m = table.number("height_m", -huge, huge, belt.height_m);
+  belt.min_size_m = table.number("min_size_m", 1e-3, huge, belt.min_size_m);
+  belt.max_size_m =
+      table.number("max_size_m", belt.min_size_m, huge, std::max(belt.min_size_m, belt.max_size_m));
+  belt.relief = table.number("relief", 0.0, 0.9, belt.relief);
+  belt.beacon_height_m = table.number("beacon_height_m", 0.0, huge, belt.beacon_height_m);
+  belt.seed = seed_of(table);
+  return belt;
+}
+
 BoxFieldParameters read_box_field(const Settings& table) {
   BoxFieldParameters field;
   field.count = count_of(table, "count", 1, 10'000'000);
@@ -83,7 +108,9 @@ RoomRingParameters read_room_ring(const Settings& table) {
 
 void read_generator(const Settings& table, SceneDescription& scene) {
   const std::string kind = table.text("kind");
-  if (kind == "hares") {
+  if (kind == "asteroid_belt") {
+    scene.source = read_asteroid_belt(table);
+  } else if (kind == "hares") {
     scene.source = read_hares(table);
   } else if (kind == "box_field") {
     scene.source = read_box_field(table);
@@ -92,9 +119,10 @@ void read_generator(const Settings& table, SceneDescription& scene) {
   } else if (kind == "room_ring") {
     scene.source = read_room_ring(table);
   } else {
-    throw InputError(
-        table.where() + ": " +
-        unknown_name("generator", kind, {"box_field", "city", "hares", "room_ring"}).what());
+    throw InputError(table.where() + ": " +
+                     unknown_name("generator", kind,
+                                  {"asteroid_belt", "box_field", "city", "hares", "room_ring"})
+                         .what());
   }
   table.done();
 }

@@ -36,8 +36,8 @@ struct SceneDescription {
   std::filesystem::path folder;
   std::string description;
   std::string default_path;  // empty: fitted to the scene
-  std::variant<MeshSource, QuakeSource, HaresSource, BoxFieldParameters, CityParameters,
-               RoomRingParameters>
+  std::variant<MeshSource, QuakeSource, HaresSource, AsteroidBeltParameters, BoxFieldParameters,
+               CityParameters, RoomRingParameters>
       source;
 };
 

@@ -65,6 +65,7 @@ class Maker {
     }
     return make_hares(std::move(scene.meshes[0]), hares.parameters);
   }
+  Scene operator()(const AsteroidBeltParameters& belt) const { return make_asteroid_belt(belt); }
   Scene operator()(const BoxFieldParameters& field) const { return make_box_field(field); }
   Scene operator()(const CityParameters& city) const { return make_city(city); }
   Scene operator()(const RoomRingParameters& ring) const { return make_room_ring(ring); }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
@@ -71,6 +72,76 @@ TEST(Hares, AreDealtOutwardAlongTheAxes) {
   EXPECT_EQ(scene.objects[0].transform[3], glm::dvec3(2.0, 0.0, 0.0));
   EXPECT_EQ(scene.objects[13].transform[3], glm::dvec3(-6.0, 0.0, 0.0));
   EXPECT_NEAR(scene.bounds().max.x, 6.5, 1e-5);
+}
+
+TEST(Asteroid, IsASolidWithTheVerticesOfItsDetail) {
+  for (const std::uint32_t detail : {4U, 8U, 64U}) {
+    for (const double relief : {0.0, 0.3, 0.9}) {
+      SCOPED_TRACE(detail);
+      Scene scene;
+      scene.meshes.push_back(asteroid_mesh(detail, relief, 5));
+      scene.objects.push_back({0, glm::dmat4x3(1.0), none_id});
+      scene.finish();
+      const Mesh& mesh = scene.meshes[0];
+      EXPECT_EQ(mesh.positions.size(), (detail + 1) * (detail + 1));
+      EXPECT_EQ(mesh.triangles.size(), 2 * detail * (detail - 1));
+      EXPECT_TRUE(mesh.closed);
+      EXPECT_TRUE(mesh.solid);
+      EXPECT_EQ(scene.report.zero_area_triangles, 0U);
+      float least = 2.0F;
+      float most = 0.0F;
+      for (const glm::vec3& p : mesh.positions) {
+        least = std::min(least, glm::length(p));
+        most = std::max(most, glm::length(p));
+      }
+      EXPECT_GE(least, 1.0 - relief - 1e-6);
+      EXPECT_LE(most, 1.0 + relief + 1e-6);
+      if (relief > 0.0) {
+        EXPECT_GT(most - least, 0.5 * relief);
+      }
+    }
+  }
+}
+
+TEST(AsteroidBelt, LiesInItsRing) {
+  AsteroidBeltParameters parameters;
+  parameters.count = 300;
+  parameters.detail = 8;
+  parameters.shapes = 5;
+  parameters.height_m = 200.0;
+  Scene scene = make_asteroid_belt(parameters);
+  scene.finish();
+  EXPECT_EQ(scene.object_count(), 300U);
+  EXPECT_EQ(scene.meshes.size(), 5U);
+  std::set<MeshId> shapes;
+  for (const Object& object : scene.objects) {
+    shapes.insert(object.mesh);
+    const glm::dvec3 p = object.transform[3];
+    EXPECT_LE(std::abs(std::hypot(p.x, p.z) - 1000.0), 150.0 + 1e-9);
+    EXPECT_LE(std::abs(p.y - 200.0), 30.0);
+    const double size = glm::length(object.transform[0]);
+    EXPECT_GE(size, 4.0 - 1e-9);
+    EXPECT_LE(size, 20.0 + 1e-9);
+    EXPECT_NEAR(glm::determinant(glm::dmat3(object.transform)), size * size * size, 1e-6);
+  }
+  EXPECT_EQ(shapes.size(), 5U);
+  parameters.seed = 2;
+  Scene other = make_asteroid_belt(parameters);
+  other.finish();
+  EXPECT_NE(other.content_hash(), scene.content_hash());
+}
+
+TEST(AsteroidBelt, LiesAboveTheMiddleOfItsSceneBetweenBeacons) {
+  AsteroidBeltParameters parameters;
+  parameters.count = 100;
+  parameters.detail = 4;
+  parameters.height_m = 200.0;
+  parameters.beacon_height_m = 300.0;
+  Scene scene = make_asteroid_belt(parameters);
+  scene.finish();
+  EXPECT_EQ(scene.object_count(), 102U);
+  EXPECT_NEAR(scene.bounds().center().y, 0.0, 1e-4);
+  for (ObjectId id = 0; id < 100; ++id) EXPECT_GT(scene.objects[id].transform[3].y, 100.0);
 }
 
 TEST(City, HasThePeersBuildings) {

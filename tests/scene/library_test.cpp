@@ -128,7 +128,7 @@ TEST(Library, RefusesDescriptionsThatAreWrong) {
   EXPECT_TRUE(says(refused(folder, "[mesh]\nflie = \"a.off\"\n"), "`file` is missing"));
   EXPECT_TRUE(says(refused(folder, "[mesh]\nfile = \"a.off\"\n"), "a.off does not exist"));
   EXPECT_TRUE(says(refused(folder, "[generator]\nkind = \"forest\"\n"),
-                   "`forest` is not a generator; known: box_field, city, hares, room_ring"));
+                   "`forest` is not a generator; known: asteroid_belt, box_field, city"));
   EXPECT_TRUE(says(refused(folder, "[generator]\nkind = \"box_field\"\ncount = 0\n"),
                    "`count` is wrong; it must be a whole number from 1"));
   EXPECT_TRUE(says(refused(folder, "[generator]\nkind = \"box_field\"\ncount = 1\nsize = 2\n"),

@@ -139,6 +139,83 @@ TEST_F(Paths, ATurnIsOnTheSpotAndClosesUp) {
   }
 }
 
+TEST_F(Paths, ATurnMayLookUpAndTurnByAnAnglePerFrame) {
+  const std::string eye = "kind = \"turn\"\neye = [1, 2, 30]\n";
+  const double up = std::sin(std::acos(-1.0) / 6.0);
+  for (const PathFrame& frame : load(eye + "pitch_deg = 30\n").frames) {
+    EXPECT_NEAR(-frame.camera.pose.back.y, up, 1e-12);
+  }
+  for (const int frames : {2, 5, 21}) {
+    const Path path = load(eye + "degrees_per_frame = 150\n", frames);
+    for (int i = 0; i < frames; ++i) {
+      const glm::dvec3 forward = -path.frames[static_cast<std::size_t>(i)].camera.pose.back;
+      const double heading = 150.0 * i * std::acos(-1.0) / 180.0;
+      EXPECT_LT(glm::distance(forward, {std::cos(heading), 0.0, -std::sin(heading)}), 1e-9);
+    }
+  }
+  EXPECT_TRUE(says(refused(eye + "degrees = 9\ndegrees_per_frame = 3\n"), "not both"));
+}
+
+TEST_F(Paths, RollTheCameraAndPutItsEyeAside) {
+  const std::string eye = "kind = \"turn\"\neye = [1, 2, 30]\nframes = 4\n";
+  const Path level = load(eye);
+  const Path rolled = load(eye + "roll_deg = 90\neye_offset_m = 0.5\n");
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Pose& a = level.frames[i].camera.pose;
+    const Pose& b = rolled.frames[i].camera.pose;
+    EXPECT_EQ(b.back, a.back);
+    EXPECT_LT(glm::distance(b.up, -a.right), 1e-12);
+    EXPECT_LT(glm::distance(b.right, a.up), 1e-12);
+    EXPECT_LT(glm::distance(b.eye, a.eye + 0.5 * b.right), 1e-12);
+  }
+}
+
+TEST_F(Paths, AnAsymmetricWindowIsShiftedByAShareOfItsWidth) {
+  const Lens centred = load("kind = \"orbit\"\nnear_m = 0.5\n").frames[0].camera.lens;
+  for (const double share : {-0.5, 0.25, 0.5}) {
+    const std::string key = "asymmetry = " + std::to_string(share) + "\n";
+    const Lens lens = load("kind = \"orbit\"\nnear_m = 0.5\n" + key).frames[0].camera.lens;
+    const double width = centred.right - centred.left;
+    EXPECT_NEAR(lens.left, centred.left + share * width, 1e-12);
+    EXPECT_NEAR(lens.right, centred.right + share * width, 1e-12);
+    EXPECT_EQ(lens.top, centred.top);
+  }
+  EXPECT_TRUE(says(refused("kind = \"orbit\"\nasymmetry = 0.6\n"), "`asymmetry` is wrong"));
+}
+
+TEST_F(Paths, AnOrthographicImageIsAsHighAsItSays) {
+  const Lens lens = load("kind = \"orbit\"\northographic_height_m = 7.0\n").frames[0].camera.lens;
+  EXPECT_EQ(lens.projection, Projection::orthographic);
+  EXPECT_DOUBLE_EQ(lens.top - lens.bottom, 7.0);
+  EXPECT_LT(0.0, lens.near_m);
+  EXPECT_LT(lens.near_m, lens.far_m);
+  EXPECT_TRUE(says(refused("kind = \"orbit\"\northographic_height_m = 7\nfov_deg = 60\n"),
+                   "`fov_deg` is for perspective lenses"));
+  EXPECT_TRUE(says(refused("kind = \"orbit\"\northographic_height_m = 7\nfar_m = inf\n"),
+                   "finite `far_m`"));
+}
+
+TEST_F(Paths, AFarPlaneMayBeInfinitelyFar) {
+  const Lens finite = load("kind = \"orbit\"\n").frames[0].camera.lens;
+  const Lens infinite = load("kind = \"orbit\"\nfar_m = inf\n").frames[0].camera.lens;
+  EXPECT_TRUE(std::isinf(infinite.far_m));
+  EXPECT_EQ(infinite.near_m, finite.near_m);
+}
+
+TEST_F(Paths, TheCornersOfWideAndShiftedNearPlanesDoNotCutTheScene) {
+  for (const std::string& lens :
+       {std::string("fov_deg = 150\n"), std::string("fov_deg = 90\nasymmetry = 0.5\n"),
+        std::string("orthographic_height_m = 1.0\n")}) {
+    SCOPED_TRACE(lens);
+    for (const PathFrame& frame : load("kind = \"orbit\"\n" + lens).frames) {
+      const Lens& window = frame.camera.lens;
+      const double corner =
+          std::hypot(std::max(std::abs(window.left), window.right), window.top, window.near_m);
+      EXPECT_GT(distance_to_scene(scene_, frame.camera), corner);
+    }
+  }
+}
+
 TEST_F(Paths, StopAndGoStandsHalfOfTheTime) {
   const Path path =
       load("kind = \"stop_and_go\"\npoints = [[0, 5, 9], [10, 5, 9]]\nstops = 5\nframes = 201\n");

@@ -62,4 +62,31 @@ struct RoomRingParameters {
 /// middle.
 Scene make_room_ring(const RoomRingParameters& parameters);
 
+struct AsteroidBeltParameters {
+  std::uint32_t count = 600;
+  std::uint32_t detail = 64;                   // a power of two from 4 on
+  std::uint32_t shapes = 12;                   // different meshes, dealt out at random
+  double radius_m = 1000.0;                    // of the belt's middle circle
+  double width_m = 300.0;                      // from its inner to its outer edge
+  double thickness_m = 60.0;                   // of its middle circle's heights
+  double height_m = 0.0;                       // of its mid-plane above the world's origin
+  double min_size_m = 4.0, max_size_m = 20.0;  // mean radius of an asteroid
+  double relief = 0.3;  // how far its surface goes up and down, in its mean radius, below 1
+  double beacon_height_m = 0.0;  // 0: no beacons
+  std::uint64_t seed = 1;
+};
+
+/// Asteroids that lie at random in a flat ring round the vertical through the world's origin, as in
+/// Gschwantner and Hebart's
+/// engine report (2007): spheres of (detail + 1)^2 vertices, displaced by a
+/// fractal; orientations are random. Needs width below twice the radius. Two beacons, cubes of 1 m
+/// half size, stand on the ring's axis at +/- `beacon_height_m` and make the scene's box symmetric
+/// about y = 0, so that `height_m` says where in the box, and hence in an octree, the belt lies.
+Scene make_asteroid_belt(const AsteroidBeltParameters& parameters);
+
+/// An asteroid with a mean radius of about 1: closed, (detail + 1)^2 vertices, 2 detail (detail -
+/// 1) triangles. The two ends of each circle of latitude are vertices of their own at equal
+/// positions, and so are those of a pole.
+Mesh asteroid_mesh(std::uint32_t detail, double relief, std::uint64_t seed);
+
 }  // namespace vislab

@@ -1,13 +1,19 @@
 // Path descriptions: TOML files that name a kind of way and its parameters (data/paths).
+//
+// Keys of every path: `kind`, `description`, `frames` (60), `relative` (points are relative to the
+// scene), those of the lens (lens_fit.h), `roll_deg` (about the view, counter-clockwise as the
+// camera sees itself turn), `eye_offset_m` (to the camera's right: the eyes of a headset), and the
+// table `motion` (motion_settings.h).
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 
 #include "common/scene/error.h"
 #include "common/scene/file_bytes.h"
 #include "common/scene/library.h"
+#include "common/scene/paths/lens_fit.h"
+#include "common/scene/paths/motion_settings.h"
+#include "common/scene/paths/path_points.h"
 #include "common/scene/paths/recorded.h"
 #include "common/scene/paths/tracks.h"
 #include "common/scene/quake_world.h"
@@ -19,50 +25,16 @@ namespace {
 constexpr int default_frames = 60;
 constexpr int default_places = 4;
 
-/// A way with what a camera needs beside it.
+double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
+
+/// A way with what a camera needs beside it, and what moves meanwhile.
 struct Plan {
   Track track;
   int frames = default_frames;
-  double fov_deg = 60.0;
-  std::optional<double> near_m, far_m;  // fitted to the scene if absent
-};
-
-/// The scene's box, or one of 1 m radius around a scene that is a single point: ways and lenses are
-/// fitted to it.
-Aabb framed(const Scene& scene) {
-  const Aabb& box = scene.bounds();
-  if (glm::length(box.half_size()) >= 0.5 * min_scene_extent_m) return box;
-  const glm::vec3 center(box.center());
-  const glm::vec3 reach(static_cast<float>(std::numbers::inv_sqrt3));
-  return {center - reach, center + reach};
-}
-
-/// Points of a description: in the world, or, if `relative` is set, from the centre of the scene's
-/// box in units of the radius of its circumscribed sphere.
-class Points {
- public:
-  Points(const Settings& settings, const Scene& scene) : settings_(settings) {
-    if (settings.flag("relative", false)) {
-      const Aabb box = framed(scene);
-      center_ = box.center();
-      unit_ = glm::length(box.half_size());
-    }
-  }
-  std::vector<glm::dvec3> list(const std::string& key, std::size_t at_least) const {
-    std::vector<glm::dvec3> points = settings_.points(key);
-    if (points.size() < at_least) {
-      throw InputError(settings_.where() + ": `" + key + "` needs at least " +
-                       std::to_string(at_least) + " points");
-    }
-    for (glm::dvec3& p : points) p = center_ + p * unit_;
-    return points;
-  }
-  glm::dvec3 one(const std::string& key) const { return center_ + settings_.point(key) * unit_; }
-
- private:
-  const Settings& settings_;
-  glm::dvec3 center_{0.0};
-  double unit_ = 1.0;
+  LensWishes lens;
+  double roll_rad = 0.0;
+  double eye_offset_m = 0.0;
+  std::optional<Motion> motion;
 };
 
 Track read_orbit(const Settings& settings, const Scene& scene) {
@@ -75,15 +47,31 @@ Track read_orbit(const Settings& settings, const Scene& scene) {
 }
 
 /// Looks to `target` if there is one, else where it goes.
-Track read_walk(const Settings& settings, const Points& points) {
-  const std::vector<glm::dvec3> way = points.list("points", 2);
+Track read_walk(const Settings& settings, const PathPoints& points) {
+  const std::vector<glm::dvec3> way = points.list(settings, "points", 2);
   if (!settings.has("target")) return walk_track(way, settings.number("turns", -100.0, 100.0, 0.0));
-  return gazing_track(way, points.one("target"));
+  return gazing_track(way, points.one(settings, "target"));
 }
 
-Track read_cut(const Settings& settings, const Points& points) {
-  const std::vector<glm::dvec3> eyes = points.list("eyes", 1);
-  const std::vector<glm::dvec3> targets = points.list("targets", 1);
+/// By `degrees` in all, or by `degrees_per_frame`, whatever the number of frames.
+Track read_turn(const Settings& settings, const PathPoints& points, int frames) {
+  const glm::dvec3 eye = points.one(settings, "eye");
+  const double pitch_rad = radians(settings.number("pitch_deg", -90.0, 90.0, 0.0));
+  if (!settings.has("degrees_per_frame")) {
+    return turn_track(eye, settings.number("degrees", -3600.0, 3600.0, 360.0), pitch_rad);
+  }
+  if (settings.has("degrees")) {
+    throw InputError(settings.where() + ": give `degrees` or `degrees_per_frame`, not both");
+  }
+  const double each_deg = settings.number("degrees_per_frame", -360.0, 360.0);
+  Track track = turn_track(eye, each_deg * std::max(frames - 1, 1), pitch_rad);
+  track.loop = false;
+  return track;
+}
+
+Track read_cut(const Settings& settings, const PathPoints& points) {
+  const std::vector<glm::dvec3> eyes = points.list(settings, "eyes", 1);
+  const std::vector<glm::dvec3> targets = points.list(settings, "targets", 1);
   if (eyes.size() != targets.size()) {
     throw InputError(settings.where() + ": there must be as many targets as eyes");
   }
@@ -110,26 +98,29 @@ Track checked_portal_track(const Scene& scene, double eye_height_m, const std::s
   return portal_track(scene, eye_height_m);
 }
 
-/// `frames` is set to a recorded path's own number and otherwise left as it is.
-Track read_track(const Settings& settings, const Scene& scene, const std::filesystem::path& folder,
-                 int& frames) {
-  const Points points(settings, scene);
-  const std::string kind = settings.text("kind");
+/// The number of frames that is asked for, or the description's, or `own`.
+int frames_of(const Settings& settings, int asked, int own) {
+  const auto described = static_cast<int>(settings.whole("frames", 1, 1'000'000, own));
+  return asked > 0 ? asked : described;
+}
+
+Track read_recorded(const std::filesystem::path& file, int& frames) {
+  std::vector<Pose> poses = read_recorded_poses(file);
+  frames = static_cast<int>(poses.size());
+  return list_track(std::move(poses));
+}
+
+/// The way of a kind that is not recorded.
+Track read_track(const Settings& settings, const PathPoints& points, const Scene& scene,
+                 const std::string& kind, int frames) {
   if (kind == "orbit") return read_orbit(settings, scene);
-  if (kind == "turn") {
-    return turn_track(points.one("eye"), settings.number("degrees", -3600.0, 3600.0, 360.0));
-  }
+  if (kind == "turn") return read_turn(settings, points, frames);
   if (kind == "walk") return read_walk(settings, points);
   if (kind == "stop_and_go") {
     const auto stops = static_cast<int>(settings.whole("stops", 1, 1000));
     return stop_and_go_track(read_walk(settings, points), stops);
   }
   if (kind == "cut") return read_cut(settings, points);
-  if (kind == "recorded") {
-    std::vector<Pose> poses = read_recorded_poses(folder / settings.text("file"));
-    frames = static_cast<int>(poses.size());
-    return list_track(std::move(poses));
-  }
   if (kind == "places") {
     const auto places = static_cast<int>(settings.whole("places", 1, 1000, default_places));
     return checked_quake_track(scene, places, settings.where());
@@ -145,49 +136,61 @@ Track read_track(const Settings& settings, const Scene& scene, const std::filesy
           .what());
 }
 
-Plan read_plan(const std::filesystem::path& file, const Scene& scene) {
+/// `frames` > 0 is the number that is asked for.
+Plan read_plan(const std::filesystem::path& file, const Scene& scene, int frames) {
   const Settings settings = Settings::from_file(file);
-  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const PathPoints points(settings, scene);
   Plan plan;
   settings.text("description", "");
-  plan.fov_deg = settings.number("fov_deg", 1.0, 179.0, plan.fov_deg);
-  if (settings.has("near_m")) plan.near_m = settings.number("near_m", 1e-9, infinity);
-  if (settings.has("far_m")) plan.far_m = settings.number("far_m", 1e-9, infinity);
-  plan.track = read_track(settings, scene, file.parent_path(), plan.frames);
-  plan.frames = static_cast<int>(settings.whole("frames", 1, 1'000'000, plan.frames));
+  plan.lens = read_lens_wishes(settings);
+  plan.roll_rad = radians(settings.number("roll_deg", -180.0, 180.0, 0.0));
+  plan.eye_offset_m = settings.number("eye_offset_m", -1e6, 1e6, 0.0);
+  const std::string kind = settings.text("kind");
+  if (kind == "recorded") {
+    plan.track = read_recorded(file.parent_path() / settings.text("file"), plan.frames);
+    plan.frames = frames_of(settings, frames, plan.frames);
+  } else {
+    plan.frames = frames_of(settings, frames, plan.frames);
+    plan.track = read_track(settings, points, scene, kind, plan.frames);
+  }
+  if (settings.has("motion")) plan.motion = read_motion(settings.table("motion"), points, scene);
   settings.done();
   return plan;
 }
 
-Plan fitted_plan(const Scene& scene) {
+Plan fitted_plan(const Scene& scene, int frames) {
   Plan plan;
   plan.track = scene.quake && !scene.quake->places.empty()
                    ? quake_track(scene, default_places)
                    : orbit_track(framed(scene), OrbitParameters());
+  if (frames > 0) plan.frames = frames;
   return plan;
 }
 
-/// One lens for all poses. The far plane is behind everything; the near plane is at half the
-/// smallest distance from the scene's box, which the image's corners cannot see past, or, for eyes
-/// inside, at a thousandth of the far distance: nearer, a depth buffer of 32 bits no longer tells
-/// apart what rays do.
-Lens fitted_lens(const Plan& plan, const std::vector<Pose>& poses, const Aabb& bounds,
-                 double aspect) {
-  double nearest = std::numeric_limits<double>::infinity();
-  double farthest = 0.0;
-  for (const Pose& pose : poses) {
-    nearest = std::min(nearest, std::sqrt(distance_squared(bounds, pose.eye)));
-    farthest =
-        std::max(farthest, glm::length(glm::abs(pose.eye - bounds.center()) + bounds.half_size()));
+/// The way's poses, each turned about its view and put to its right as the plan says.
+std::vector<Pose> poses_of(const Plan& plan) {
+  std::vector<Pose> poses = plan.track.sampled(plan.frames);
+  for (Pose& pose : poses) {
+    if (plan.roll_rad != 0.0) pose = rolled(pose, plan.roll_rad);
+    if (plan.eye_offset_m != 0.0) pose.eye += pose.right * plan.eye_offset_m;
   }
-  const double far_m = plan.far_m.value_or(1.01 * farthest);
-  const double fitted_near = std::max(0.5 * nearest, 1e-3 * far_m);
-  const double near_m = plan.near_m.value_or(std::min(fitted_near, 0.5 * far_m));
-  if (!(near_m < far_m)) {
-    throw InputError("the near plane at " + std::to_string(near_m) +
-                     " m must be nearer than the far plane at " + std::to_string(far_m) + " m");
+  return poses;
+}
+
+Path path_of(const Plan& plan, const Scene& scene, double aspect) {
+  const std::vector<Pose> poses = poses_of(plan);
+  std::vector<Changes> changes(poses.size());
+  Aabb box = framed(scene);
+  if (plan.motion) {
+    changes = changes_of(*plan.motion, scene, plan.track.times(plan.frames));
+    box.extend(reach_of(scene, changes));
   }
-  return perspective_lens(plan.fov_deg * std::numbers::pi / 180.0, aspect, near_m, far_m);
+  const Lens lens = fitted_lens(plan.lens, poses, box, aspect);
+  Path path;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    path.frames.push_back({{poses[i], lens}, std::move(changes[i])});
+  }
+  return path;
 }
 
 /// The description's file, or nothing for a default path.
@@ -209,27 +212,23 @@ std::filesystem::path located(const std::string& name_or_file, const DataFolders
 
 Path load_path(const std::string& name_or_file, const Scene& scene, const Viewport& viewport,
                int frames, const DataFolders& folders) {
+  std::string name = "fitted";
   Plan plan;
-  Path path;
   if (name_or_file.empty()) {
-    plan = fitted_plan(scene);
-    path.name = "fitted";
+    plan = fitted_plan(scene, frames);
   } else {
     const std::filesystem::path file = located(name_or_file, folders);
     require_file(file);
-    path.name = file.stem().string();
+    name = file.stem().string();
     if (lower_extension(file) == "json") {
-      const std::vector<Pose> poses = read_recorded_poses(file);
-      plan.frames = static_cast<int>(poses.size());
-      plan.track = list_track(poses);
+      plan.track = read_recorded(file, plan.frames);
+      if (frames > 0) plan.frames = frames;
     } else {
-      plan = read_plan(file, scene);
+      plan = read_plan(file, scene, frames);
     }
   }
-  if (frames > 0) plan.frames = frames;
-  const std::vector<Pose> poses = plan.track.sampled(plan.frames);
-  const Lens lens = fitted_lens(plan, poses, framed(scene), viewport.aspect());
-  for (const Pose& pose : poses) path.frames.push_back({{pose, lens}, {}});
+  Path path = path_of(plan, scene, viewport.aspect());
+  path.name = name;
   return path;
 }
 

@@ -28,12 +28,16 @@ Pose pose_at(const std::vector<Waypoint>& way, double time) {
 
 }  // namespace
 
+std::vector<double> Track::times(int frames) const {
+  const int steps = loop ? frames : std::max(frames - 1, 1);
+  std::vector<double> times;
+  for (int i = 0; i < frames; ++i) times.push_back(static_cast<double>(i) / steps);
+  return times;
+}
+
 std::vector<Pose> Track::sampled(int frames) const {
   std::vector<Pose> poses;
-  for (int i = 0; i < frames; ++i) {
-    const int steps = loop ? frames : std::max(frames - 1, 1);
-    poses.push_back(pose(static_cast<double>(i) / steps));
-  }
+  for (const double u : times(frames)) poses.push_back(pose(u));
   return poses;
 }
 
@@ -60,9 +64,15 @@ Track orbit_track(const Aabb& bounds, const OrbitParameters& parameters) {
   return {pose, true};
 }
 
-Track turn_track(const glm::dvec3& eye, double degrees) {
-  const auto pose = [=](double u) { return heading_pose(eye, radians(degrees) * u, 0.0); };
+Track turn_track(const glm::dvec3& eye, double degrees, double pitch_rad) {
+  const auto pose = [=](double u) { return heading_pose(eye, radians(degrees) * u, pitch_rad); };
   return {pose, std::abs(degrees) == 360.0};
+}
+
+Pose rolled(const Pose& pose, double angle_rad) {
+  const double c = std::cos(angle_rad);
+  const double s = std::sin(angle_rad);
+  return {pose.eye, pose.right * c + pose.up * s, pose.up * c - pose.right * s, pose.back};
 }
 
 Track walk_track(const std::vector<glm::dvec3>& points, double turns) {

@@ -16,6 +16,8 @@ struct Track {
 
   /// `frames` > 0 poses, equally spaced: a loop leaves its end out, any other way includes it.
   std::vector<Pose> sampled(int frames) const;
+  /// The times u of those poses.
+  std::vector<double> times(int frames) const;
 };
 
 /// `heading` is about the y axis: 0 looks along +x, a quarter turn along -z. `pitch` looks up.
@@ -33,8 +35,11 @@ struct OrbitParameters {
 /// distance - swing > 1.
 Track orbit_track(const Aabb& bounds, const OrbitParameters& parameters);
 
-/// On the spot, about the vertical.
-Track turn_track(const glm::dvec3& eye, double degrees);
+/// On the spot, about the vertical, looking up by a pitch.
+Track turn_track(const glm::dvec3& eye, double degrees, double pitch_rad);
+
+/// A pose turned about its view: its up goes to its left.
+Pose rolled(const Pose& pose, double angle_rad);
 
 /// Along straight lines through two points or more, looking where it goes and turning at the
 /// corners; beside that it turns round `turns` times on the whole way.
