@@ -23,7 +23,7 @@
 
 namespace vislab {
 
-class AxisBsp : public SpatialStructure {
+class AxisBsp final : public SpatialStructure {
  public:
   enum class Straddlers { node, both, centre };
   enum class Split { midpoint, median, cost };

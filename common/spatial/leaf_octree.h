@@ -21,7 +21,7 @@
 
 namespace vislab {
 
-class LeafOctree : public SpatialStructure {
+class LeafOctree final : public SpatialStructure {
  public:
   /// A leaf is not halved at `depth` (the root is at 0) or with up to `leaf_objects` objects.
   struct Limits {

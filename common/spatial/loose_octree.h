@@ -22,7 +22,7 @@
 
 namespace vislab {
 
-class LooseOctree : public SpatialStructure {
+class LooseOctree final : public SpatialStructure {
  public:
   struct Limits {
     double overlap_m = 0.0;

@@ -1,0 +1,165 @@
+// What the cullers over octrees and partitions share: a structure that follows the scene, and a
+// culler that walks it.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "algorithms/frustum/traversal.h"
+
+namespace vislab::frustum_culling {
+
+/// A spatial structure that holds exactly the objects that are shown, where they lie now.
+template <typename Structure>
+class FollowedStructure {
+ public:
+  explicit FollowedStructure(const typename Structure::Limits& limits) : structure_(limits) {}
+
+  const Structure& structure() const { return structure_; }
+
+  /// The scene outlives this.
+  void build(const Scene& scene) {
+    scene_ = &scene;
+    build_as_loaded();
+  }
+
+  /// Back to the scene as built. False if it is so already.
+  bool reset() {
+    if (!changed_) return false;
+    build_as_loaded();
+    return true;
+  }
+
+  /// What is in `changes` moves, comes and goes. False if nothing of it concerns the structure.
+  bool update(const Frame& frame, const Changes& changes) {
+    if (changes.empty()) return false;
+    for (const ObjectId object : changes.hidden) {
+      if (is_in_[object] == 0) continue;
+      structure_.remove(object);
+      is_in_[object] = 0;
+    }
+    for (const ObjectId object : changes.moved) {
+      if (is_in_[object] != 0) structure_.move(object, frame.objects.bounds[object]);
+    }
+    for (const ObjectId object : changes.shown) {
+      if (is_in_[object] != 0) continue;
+      structure_.insert(object, frame.objects.bounds[object]);
+      is_in_[object] = 1;
+    }
+    structure_.finish_changes();
+    changed_ = true;
+    return true;
+  }
+
+  std::size_t bytes() const { return structure_.bytes() + is_in_.capacity(); }
+
+ private:
+  void build_as_loaded() {
+    std::vector<Aabb> boxes;
+    boxes.reserve(scene_->object_count());
+    for (ObjectId object = 0; object < scene_->object_count(); ++object) {
+      boxes.push_back(
+          transformed(scene_->mesh_of(object).bounds, scene_->objects[object].transform));
+    }
+    structure_.build(boxes);
+    is_in_.assign(boxes.size(), 1);
+    changed_ = false;
+  }
+
+  Structure structure_;
+  const Scene* scene_ = nullptr;
+  std::vector<std::uint8_t> is_in_;  // by object
+  bool changed_ = false;             // since the scene was as built
+};
+
+/// A culler that walks a structure from its root (traversal.h).
+template <typename Structure>
+class StructureCuller : public ICuller {
+ public:
+  /// `values`: those of object_test_parameters, node_policy_parameter and switch_parameters are
+  /// read.
+  StructureCuller(CullerInfo info, const typename Structure::Limits& limits,
+                  const ParameterValues& values)
+      : info_(std::move(info)),
+        followed_(limits),
+        tester_(read_switches(values)),
+        objects_(read_object_test(values, false)),
+        traversal_(read_node_policy(values)) {
+    info_.repeatability = tester_.switches().repeatability();
+  }
+
+  const CullerInfo& info() const override { return info_; }
+
+  void build(const Scene& scene, const BuildContext&) override {
+    followed_.build(scene);
+    objects_.build(scene);
+    traversal_.build(scene.object_count(), followed_.structure().repeats_objects());
+  }
+
+  void reset(std::uint64_t) override {
+    followed_.reset();
+    objects_.reset();
+    tester_.forget();
+  }
+
+  void update(const Frame& frame, const Changes& changes) override {
+    objects_.update(frame, changes);
+    if (!followed_.update(frame, changes)) return;
+    for (const ObjectId object : changes.moved) tester_.forget(object);
+    tester_.forget_motion();
+  }
+
+  void cull(const Frame& frame, const Candidates& candidates, DrawSink& out) override {
+    if (candidates.form() != Candidates::Form::everything) {
+      traversal_.cull_each(candidates, tester_, objects_, frame, out);
+      return;
+    }
+    const Structure& structure = followed_.structure();
+    objects_in_root_ += structure.objects_at(Structure::root).size();
+    objects_unplaced_ += structure.unplaced().size();
+    traversal_.cull(structure, tester_, objects_, frame, out);
+  }
+
+  std::size_t bytes() const override {
+    return followed_.bytes() + tester_.bytes() + objects_.bytes() + traversal_.bytes();
+  }
+
+  Counters counters() const override {
+    Counters counters{{"nodes_visited", traversal_.nodes_visited()},
+                      {"objects_tested", traversal_.objects_tested()},
+                      {"objects_in_root", objects_in_root_},
+                      {"objects_unplaced", objects_unplaced_}};
+    objects_.append_counters(tester_, counters);
+    return counters;
+  }
+
+ private:
+  CullerInfo info_;
+  FollowedStructure<Structure> followed_;
+  FrustumTester tester_;
+  ObjectTester objects_;
+  Traversal traversal_;
+  std::uint64_t objects_in_root_ = 0;
+  std::uint64_t objects_unplaced_ = 0;
+};
+
+/// The parts of the declaration that all of them have in common. `own`: the structure's parameters.
+inline CullerInfo structure_culler_info(std::string name, std::vector<ParameterSpec> own,
+                                        ParameterSpec intersecting) {
+  CullerInfo info;
+  info.name = std::move(name);
+  info.family = "frustum";
+  info.guarantee = Guarantee::conservative;
+  info.repeatability = Repeatability::stateless;
+  info.granularity = Granularity::object;
+  info.culls = Culls::outside_frustum;
+  info.space = Space::object;
+  info.stage = PipelineStage::application;
+  info.parameters = std::move(own);
+  info.parameters.push_back(std::move(intersecting));
+  for (ParameterSpec& spec : object_test_parameters()) info.parameters.push_back(std::move(spec));
+  for (ParameterSpec& spec : switch_parameters()) info.parameters.push_back(std::move(spec));
+  return info;
+}
+
+}  // namespace vislab::frustum_culling
