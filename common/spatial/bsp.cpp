@@ -25,7 +25,8 @@ double surface(const Aabb& box) {
 
 std::array<int, 3> longest_first(const glm::dvec3& edges) {
   std::array<int, 3> axes{0, 1, 2};
-  std::ranges::stable_sort(axes, [&](int a, int b) { return edges[a] > edges[b]; });
+  std::ranges::sort(
+      axes, [&](int a, int b) { return edges[a] > edges[b] || (edges[a] == edges[b] && a < b); });
   return axes;
 }
 

@@ -29,31 +29,43 @@ Aabb common_part(const Aabb& a, const Aabb& b) {
   return part;
 }
 
-/// Do the boxes from `next` on hold all of `box` together? What sticks out of the first is looked
-/// for in the others, slab by slab.
-bool hold_together(std::span<const Aabb> boxes, const Aabb& box) {
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const Aabb part = common_part(boxes[i], box);
-    if (part.empty()) continue;
-    const std::span<const Aabb> others = boxes.subspan(i + 1);
-    Aabb rest = box;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (rest.min[axis] < part.min[axis]) {
-        Aabb slab = rest;
-        slab.max[axis] = part.min[axis];
-        if (!hold_together(others, slab)) return false;
-      }
-      if (part.max[axis] < rest.max[axis]) {
-        Aabb slab = rest;
-        slab.min[axis] = part.max[axis];
-        if (!hold_together(others, slab)) return false;
-      }
-      rest.min[axis] = part.min[axis];
-      rest.max[axis] = part.max[axis];
-    }
-    return true;
+/// Does the part fill some of the box? A touch (no extent where the box has some) does not count.
+bool fills(const Aabb& part, const Aabb& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(part.min[axis] <= part.max[axis])) return false;
+    if (part.min[axis] == part.max[axis] && box.min[axis] < box.max[axis]) return false;
   }
-  return false;
+  return true;
+}
+
+/// Do the boxes hold all of `box` together? What sticks out of the first is looked for in the
+/// others, slab by slab.
+bool hold_together(std::span<const Aabb> boxes, const Aabb& box) {
+  std::vector<Aabb> parts;  // what of `box` each holds
+  for (const Aabb& other : boxes) {
+    const Aabb part = common_part(other, box);
+    if (part == box) return true;
+    if (fills(part, box)) parts.push_back(part);
+  }
+  if (parts.empty()) return false;
+  const Aabb first = parts.front();
+  const std::span<const Aabb> others = std::span(parts).subspan(1);
+  Aabb rest = box;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (rest.min[axis] < first.min[axis]) {
+      Aabb slab = rest;
+      slab.max[axis] = first.min[axis];
+      if (!hold_together(others, slab)) return false;
+    }
+    if (first.max[axis] < rest.max[axis]) {
+      Aabb slab = rest;
+      slab.min[axis] = first.max[axis];
+      if (!hold_together(others, slab)) return false;
+    }
+    rest.min[axis] = first.min[axis];
+    rest.max[axis] = first.max[axis];
+  }
+  return true;
 }
 
 class Audit {

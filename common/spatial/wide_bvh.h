@@ -136,7 +136,7 @@ class WideBvh {
   std::vector<WideNode> nodes_;             // the root first, children after their parents
   std::vector<BoxBlock> leaves_;            // in the order of the objects
   std::vector<ObjectId> objects_;           // place to object
-  std::vector<std::uint32_t> first_place_;  // by leaf, and one more
+  std::vector<std::uint32_t> first_place_;  // by leaf
   std::vector<std::uint32_t> node_parent_;  // by node: parent * 8 + lane
   std::vector<std::uint32_t> leaf_parent_;  // by leaf: parent * 8 + lane
   std::vector<std::uint32_t> slot_;         // by object: leaf * 8 + lane, or nowhere

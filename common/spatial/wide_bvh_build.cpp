@@ -87,13 +87,26 @@ class WideBvhBuilder {
   void collapse(const SpatialStructure& tree, std::span<const Aabb> boxes) {
     tree_ = &tree;
     boxes_ = boxes;
-    count_objects(SpatialStructure::root);
+    count_objects();
+    bvh_.objects_.resize(object_counts_[SpatialStructure::root]);
     bvh_.nodes_.emplace_back();
     bvh_.node_parent_.push_back(0);
-    fill_collapsed(0, SpatialStructure::root);
+    open_.push_back({0, SpatialStructure::root, 0});
+    while (!open_.empty()) {
+      const Source next = open_.back();
+      open_.pop_back();
+      fill_collapsed(next);
+    }
   }
 
  private:
+  /// A node that is still to be filled, and the node of the tree that it is made of.
+  struct Source {
+    std::uint32_t node;
+    std::uint32_t tree_node;
+    std::uint32_t first_place;
+  };
+
   /// Adds the children of `node`: `inner` nodes, then `leaves` leaves.
   void add_children(std::uint32_t node, std::uint32_t inner, std::uint32_t leaves) {
     WideNode& at = bvh_.nodes_[node];
@@ -153,13 +166,27 @@ class WideBvhBuilder {
     divide(middle, end, children - left, below_child);
   }
 
-  std::uint32_t count_objects(std::uint32_t node) {
-    const SpatialNode& at = tree_->nodes()[node];
-    if (object_counts_.size() <= node) object_counts_.resize(tree_->nodes().size());
-    auto count = static_cast<std::uint32_t>(tree_->objects_at(node).size());
-    for (std::uint32_t i = 0; i < at.child_count; ++i) count += count_objects(at.first_child + i);
-    object_counts_[node] = count;
-    return count;
+  /// Objects at and below each node of the tree. Trees can be deep: no recursion.
+  void count_objects() {
+    object_counts_.assign(tree_->nodes().size(), 0);
+    std::vector<std::uint32_t> order{SpatialStructure::root};
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const SpatialNode& at = tree_->nodes()[order[i]];
+      for (std::uint32_t child = 0; child < at.child_count; ++child) {
+        order.push_back(at.first_child + child);
+      }
+    }
+    while (!order.empty()) {
+      const std::uint32_t node = order.back();
+      order.pop_back();
+      const SpatialNode& at = tree_->nodes()[node];
+      auto count = static_cast<std::uint32_t>(std::ranges::count_if(
+          tree_->objects_at(node), [&](ObjectId object) { return bvh_.fits(boxes_[object]); }));
+      for (std::uint32_t child = 0; child < at.child_count; ++child) {
+        count += object_counts_[at.first_child + child];
+      }
+      object_counts_[node] = count;
+    }
   }
 
   double half_area(std::uint32_t node) const {
@@ -169,17 +196,22 @@ class WideBvhBuilder {
     return size.x * size.y + size.y * size.z + size.z * size.x;
   }
 
-  void add_objects(std::uint32_t node) {
-    const SpatialNode& at = tree_->nodes()[node];
+  /// Writes the objects of a small subtree from `place` on; returns the place behind them.
+  std::uint32_t put_objects(std::uint32_t node, std::uint32_t place) {
+    if (object_counts_[node] == 0) return place;
     for (const ObjectId object : tree_->objects_at(node)) {
-      if (bvh_.fits(boxes_[object])) bvh_.objects_.push_back(object);
+      if (bvh_.fits(boxes_[object])) bvh_.objects_[place++] = object;
     }
-    for (std::uint32_t i = 0; i < at.child_count; ++i) add_objects(at.first_child + i);
+    const SpatialNode& at = tree_->nodes()[node];
+    for (std::uint32_t i = 0; i < at.child_count; ++i) {
+      place = put_objects(at.first_child + i, place);
+    }
+    return place;
   }
 
   /// Opens the largest descendant until there are eight that are leaves or too many for one.
-  void fill_collapsed(std::uint32_t node, std::uint32_t source) {
-    std::vector<std::uint32_t> open{source};
+  void fill_collapsed(const Source& source) {
+    std::vector<std::uint32_t> open{source.tree_node};
     while (open.size() < width) {
       std::size_t best = open.size();
       for (std::size_t i = 0; i < open.size(); ++i) {
@@ -197,18 +229,20 @@ class WideBvhBuilder {
     std::erase_if(open, [&](std::uint32_t child) { return object_counts_[child] == 0; });
     std::stable_partition(open.begin(), open.end(), is_inner);
     const auto inner = static_cast<std::uint32_t>(std::ranges::count_if(open, is_inner));
-    add_children(node, inner, static_cast<std::uint32_t>(open.size()) - inner);
+    add_children(source.node, inner, static_cast<std::uint32_t>(open.size()) - inner);
+    WideNode& at = bvh_.nodes_[source.node];
+    std::uint32_t place = source.first_place;
     for (std::uint32_t lane = 0; lane < open.size(); ++lane) {
-      bvh_.nodes_[node].first[lane] = static_cast<std::uint32_t>(bvh_.objects_.size());
+      at.first[lane] = place;
       if (lane < inner) {
-        fill_collapsed(bvh_.nodes_[node].first_inner + lane, open[lane]);
+        open_.push_back({at.first_inner + lane, open[lane], place});
+        place += object_counts_[open[lane]];
       } else {
-        bvh_.first_place_[bvh_.nodes_[node].first_leaf + lane - inner] =
-            bvh_.nodes_[node].first[lane];
-        add_objects(open[lane]);
+        bvh_.first_place_[at.first_leaf + lane - inner] = place;
+        place = put_objects(open[lane], place);
       }
     }
-    bvh_.nodes_[node].first[open.size()] = static_cast<std::uint32_t>(bvh_.objects_.size());
+    at.first[open.size()] = place;
   }
 
   WideBvh& bvh_;
@@ -216,6 +250,7 @@ class WideBvhBuilder {
   const SpatialStructure* tree_ = nullptr;
   std::span<const Aabb> boxes_;
   std::vector<std::uint32_t> object_counts_;  // by node of the tree
+  std::vector<Source> open_;
 };
 
 void WideBvh::start(std::span<const Aabb> boxes) {
@@ -239,7 +274,6 @@ void WideBvh::start(std::span<const Aabb> boxes) {
 void WideBvh::finish_build(std::span<const Aabb> boxes) {
   const auto placed = static_cast<std::uint32_t>(objects_.size());
   const std::size_t leaf_count = leaf_parent_.size();
-  first_place_.push_back(placed);
   BoxBlock empty;
   for (std::size_t i = 0; i < 6; ++i) {
     const float nothing = std::numeric_limits<float>::max();
@@ -248,7 +282,9 @@ void WideBvh::finish_build(std::span<const Aabb> boxes) {
   leaves_.assign(leaf_count, empty);
   for (WideNode& node : nodes_) node.boxes = empty;
   for (std::uint32_t leaf = 0; leaf < leaf_count; ++leaf) {
-    for (std::uint32_t place = first_place_[leaf]; place < first_place_[leaf + 1]; ++place) {
+    const std::uint32_t parent = leaf_parent_[leaf];
+    const std::uint32_t end = nodes_[parent / width].first[parent % width + 1];
+    for (std::uint32_t place = first_place_[leaf]; place < end; ++place) {
       const ObjectId object = objects_[place];
       slot_[object] = leaf * width + (place - first_place_[leaf]);
       write_box(object, boxes[object]);

@@ -1,4 +1,4 @@
-// What every octree and partition promises, whatever its kind and limits.
+// What every octree, partition and hierarchy promises, whatever its kind and limits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 
 #include "common/geometry/random.h"
 #include "common/spatial/bsp.h"
+#include "common/spatial/bvh.h"
 #include "common/spatial/leaf_octree.h"
 #include "common/spatial/loose_octree.h"
 
@@ -36,6 +37,17 @@ std::vector<Kind> kinds() {
                      return std::make_unique<LooseOctree>(
                          LooseOctree::Limits{overlap, depth, 0.0, leaf_objects - 1});
                    }});
+  }
+  using enum Bvh::Build;
+  for (const Bvh::Build build : {top_down, bottom_up, incremental, packed}) {
+    using enum Bvh::Motion;
+    for (const Bvh::Motion motion : {refit, enlarge, reinsert}) {
+      all.push_back({"BVH, build " + std::to_string(static_cast<int>(build)) + ", motion " +
+                         std::to_string(static_cast<int>(motion)),
+                     [=](int /*depth*/, std::uint32_t leaf_objects) {
+                       return std::make_unique<Bvh>(Bvh::Options{build, motion, leaf_objects});
+                     }});
+    }
   }
   using enum AxisBsp::Straddlers;
   for (const AxisBsp::Straddlers straddlers : {node, both, centre}) {

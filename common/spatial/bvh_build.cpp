@@ -1,0 +1,377 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "common/geometry/random.h"
+#include "common/spatial/bvh.h"
+#include "common/spatial/morton.h"
+
+namespace vislab {
+namespace {
+
+constexpr std::size_t bin_count = 16;
+/// How far along the Z curve partners are looked for (Meister and Bittner 2018: 14 is close to the
+/// best quality).
+constexpr std::size_t search_radius = 14;
+
+struct Item {
+  Aabb box;
+  glm::dvec3 center;
+  ObjectId object;
+};
+
+double half_area(const Aabb& box) {
+  if (box.empty()) return 0.0;
+  const glm::dvec3 size = glm::dvec3(box.max) - glm::dvec3(box.min);
+  return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
+Aabb united(Aabb a, const Aabb& b) {
+  a.extend(b);
+  return a;
+}
+
+/// A plane between two bins, and what it promises: areas times numbers of full leaves.
+struct Split {
+  double cost = std::numeric_limits<double>::infinity();
+  int axis = 0;
+  std::size_t bin = 0;  // the last of the lower side
+};
+
+/// The bins of some items along one axis.
+class Bins {
+ public:
+  Bins(double low, double high)
+      : low_(low), per_m_(static_cast<double>(bin_count) / (high - low)) {}
+  /// Without extent, all is one bin.
+  bool usable() const { return std::isfinite(per_m_) && per_m_ > 0.0; }
+  std::size_t of(double center) const {
+    return std::min(static_cast<std::size_t>((center - low_) * per_m_), bin_count - 1);
+  }
+
+ private:
+  double low_, per_m_;
+};
+
+struct Centers {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()};
+  glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+};
+
+Centers centers_of(std::span<const Item> items) {
+  Centers centers;
+  for (const Item& item : items) {
+    centers.low = glm::min(centers.low, item.center);
+    centers.high = glm::max(centers.high, item.center);
+  }
+  return centers;
+}
+
+void try_axis(std::span<const Item> items, const Bins& bins, int axis, std::size_t leaf_objects,
+              Split& best) {
+  struct Bin {
+    Aabb box;
+    std::size_t count = 0;
+  };
+  std::array<Bin, bin_count> filled;
+  for (const Item& item : items) {
+    Bin& bin = filled[bins.of(item.center[axis])];
+    bin.box.extend(item.box);
+    ++bin.count;
+  }
+  const auto leaves = [&](std::size_t count) {
+    return static_cast<double>((count + leaf_objects - 1) / leaf_objects);
+  };
+  std::array<double, bin_count> above{};  // cost of all bins behind this one
+  Aabb box;
+  std::size_t count = 0;
+  for (std::size_t bin = bin_count - 1; bin > 0; --bin) {
+    box.extend(filled[bin].box);
+    count += filled[bin].count;
+    above[bin - 1] = half_area(box) * leaves(count);
+  }
+  box = {};
+  count = 0;
+  for (std::size_t bin = 0; bin + 1 < bin_count; ++bin) {
+    box.extend(filled[bin].box);
+    count += filled[bin].count;
+    const double cost = half_area(box) * leaves(count) + above[bin];
+    if (count > 0 && count < items.size() && cost < best.cost) best = {cost, axis, bin};
+  }
+}
+
+/// Parts the items in two; returns how many are in the first part. If no plane between bins parts
+/// them, they are halved as they lie.
+std::size_t split_by_areas(std::span<Item> items, std::size_t leaf_objects) {
+  const Centers centers = centers_of(items);
+  const auto bins = [&](int axis) { return Bins(centers.low[axis], centers.high[axis]); };
+  Split best;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (bins(axis).usable()) try_axis(items, bins(axis), axis, leaf_objects, best);
+  }
+  if (std::isinf(best.cost)) return items.size() / 2;
+  const Bins chosen = bins(best.axis);
+  const auto second = std::partition(items.begin(), items.end(), [&](const Item& item) {
+    return chosen.of(item.center[best.axis]) <= best.bin;
+  });
+  return static_cast<std::size_t>(second - items.begin());
+}
+
+/// Puts the items in the order of the Z curve.
+void sort_along_curve(std::vector<Item>& items) {
+  Aabb domain;
+  for (const Item& item : items) domain.extend(glm::vec3(item.center));
+  const MortonGrid grid(domain);
+  std::vector<MortonKey> keys;
+  for (std::uint32_t i = 0; i < items.size(); ++i) {
+    keys.push_back({grid.code(glm::vec3(items[i].center)), i});
+  }
+  std::vector<MortonKey> scratch;
+  sort_by_code(keys, scratch);
+  std::vector<Item> sorted;
+  sorted.reserve(items.size());
+  for (const MortonKey& key : keys) sorted.push_back(items[key.index]);
+  items.swap(sorted);
+}
+
+/// A part of the tree that the bottom-up builder has made.
+struct Cluster {
+  Aabb box;
+  std::uint32_t count = 0;            // objects
+  std::uint32_t left = 0, right = 0;  // clusters; of a single object: its item, twice
+};
+
+}  // namespace
+
+/// Fills the nodes of one tree. Friend of Bvh.
+class BvhBuilder {
+ public:
+  BvhBuilder(Bvh& bvh, std::vector<Item> items) : bvh_(bvh), items_(std::move(items)) {}
+
+  void from_ranges(bool along_curve) {
+    if (along_curve) sort_along_curve(items_);
+    const std::size_t leaf_objects = bvh_.options_.leaf_objects;
+    split_range(Bvh::root, 0, items_.size());
+    for (std::size_t i = 0; i < open_.size(); ++i) {
+      const auto [node, begin, end] = open_[i];
+      const std::span<Item> range(items_.data() + begin, end - begin);
+      const std::size_t first =
+          along_curve ? range.size() / 2 : split_by_areas(range, leaf_objects);
+      const Bvh::NodeIndex pair = divide(node);
+      split_range(pair, begin, begin + first);
+      split_range(pair + 1, begin + first, end);
+    }
+    set_boxes();
+  }
+
+  void bottom_up() {
+    sort_along_curve(items_);
+    std::vector<Cluster> clusters;
+    clusters.reserve(items_.size() * 2);
+    std::vector<std::uint32_t> active;
+    for (std::uint32_t i = 0; i < items_.size(); ++i) {
+      active.push_back(i);
+      clusters.push_back({items_[i].box, 1, i, i});
+    }
+    while (active.size() > 1) merge_partners(clusters, active);
+    if (!clusters.empty()) from_clusters(clusters);
+    set_boxes();
+  }
+
+  void incremental() {
+    Random random(1);
+    for (std::size_t i = items_.size(); i > 1; --i) {
+      std::swap(items_[i - 1], items_[random.below(i)]);
+    }
+    for (const Item& item : items_) bvh_.put_in_tree(item.object);
+    lay_out();
+  }
+
+ private:
+  struct Range {
+    Bvh::NodeIndex node;
+    std::size_t begin, end;
+  };
+
+  Bvh::NodeIndex divide(Bvh::NodeIndex node) {
+    const Bvh::NodeIndex pair = bvh_.add_pair(node);
+    bvh_.nodes_[node].first_child = pair;
+    bvh_.nodes_[node].child_count = 2;
+    return pair;
+  }
+
+  void set_run(Bvh::NodeIndex node, std::size_t begin, std::size_t end) {
+    bvh_.links_[node].first_below = static_cast<std::uint32_t>(begin);
+    bvh_.links_[node].count_below = static_cast<std::uint32_t>(end - begin);
+  }
+
+  void fill_leaf(Bvh::NodeIndex node, std::size_t begin, std::size_t end) {
+    const auto count = static_cast<std::uint32_t>(end - begin);
+    bvh_.leaves_[node] = {static_cast<std::uint32_t>(begin), count, count};
+    for (std::size_t i = begin; i < end; ++i) {
+      bvh_.objects_[i] = items_[i].object;
+      bvh_.places_[items_[i].object].node = node;
+    }
+  }
+
+  /// Makes the node a leaf, or one that is still to be divided.
+  void split_range(Bvh::NodeIndex node, std::size_t begin, std::size_t end) {
+    if (begin == 0 && end == items_.size()) bvh_.objects_.resize(items_.size());
+    set_run(node, begin, end);
+    if (end - begin > bvh_.options_.leaf_objects) {
+      open_.push_back({node, begin, end});
+    } else {
+      fill_leaf(node, begin, end);
+    }
+  }
+
+  /// One round: those that are each other's best partner become one.
+  static void merge_partners(std::vector<Cluster>& clusters, std::vector<std::uint32_t>& active) {
+    const std::size_t count = active.size();
+    std::vector<std::size_t> partner(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      double best = std::numeric_limits<double>::infinity();
+      std::size_t chosen = i == 0 ? 1 : i - 1;
+      const std::size_t end = std::min(count, i + search_radius + 1);
+      for (std::size_t j = i - std::min(i, search_radius); j < end; ++j) {
+        if (j == i) continue;
+        const double area = half_area(united(clusters[active[i]].box, clusters[active[j]].box));
+        // Equal areas: an order that is the same seen from both sides, so that where all are equal
+        // all find a partner at once.
+        const bool nearer = (i ^ j) < (i ^ chosen);
+        if (area < best || (area == best && nearer)) {
+          best = area;
+          chosen = j;
+        }
+      }
+      partner[i] = chosen;
+    }
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t other = partner[i];
+      const bool mutual = partner[other] == i;
+      if (mutual && other < i) continue;  // gone into its partner
+      if (mutual) {
+        const std::uint32_t left = active[i];
+        const std::uint32_t right = active[other];
+        clusters.push_back({united(clusters[left].box, clusters[right].box),
+                            clusters[left].count + clusters[right].count, left, right});
+        // What is behind i is still needed: the new cluster takes i's place, or an earlier one.
+        active[kept++] = static_cast<std::uint32_t>(clusters.size()) - 1;
+      } else {
+        active[kept++] = active[i];
+      }
+    }
+    active.resize(kept);
+  }
+
+  void from_clusters(const std::vector<Cluster>& clusters) {
+    struct Part {
+      Bvh::NodeIndex node;
+      std::uint32_t cluster;
+      std::size_t begin;
+    };
+    std::vector<Item> ordered(items_.size());
+    bvh_.objects_.resize(items_.size());
+    std::vector<Part> open{{Bvh::root, static_cast<std::uint32_t>(clusters.size()) - 1, 0}};
+    std::vector<Part> leaves;
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      const auto [node, index, begin] = open[i];
+      const Cluster& cluster = clusters[index];
+      set_run(node, begin, begin + cluster.count);
+      if (cluster.count <= bvh_.options_.leaf_objects) {
+        gather(clusters, index, ordered.data() + begin);
+        leaves.push_back(open[i]);
+      } else {
+        const Bvh::NodeIndex pair = divide(node);
+        open.push_back({pair, cluster.left, begin});
+        open.push_back({pair + 1, cluster.right, begin + clusters[cluster.left].count});
+      }
+    }
+    items_.swap(ordered);
+    for (const Part& leaf : leaves) {
+      fill_leaf(leaf.node, leaf.begin, leaf.begin + clusters[leaf.cluster].count);
+    }
+  }
+
+  /// Copies the items of a small cluster.
+  Item* gather(const std::vector<Cluster>& clusters, std::uint32_t index, Item* out) const {
+    const Cluster& cluster = clusters[index];
+    if (cluster.count == 1) {
+      *out = items_[cluster.left];
+      return out + 1;
+    }
+    return gather(clusters, cluster.right, gather(clusters, cluster.left, out));
+  }
+
+  /// Brings the objects of a tree that was made by insertion into the order of its leaves.
+  void lay_out() {
+    std::vector<ObjectId> ordered(items_.size());
+    std::vector<Bvh::NodeIndex> open{Bvh::root};
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      const Bvh::NodeIndex node = open[i];
+      const std::uint32_t begin = bvh_.links_[node].first_below;
+      const SpatialNode& at = bvh_.nodes_[node];
+      if (at.child_count == 0) {
+        const std::span<const ObjectId> here = bvh_.objects_at(node);
+        std::ranges::copy(here, ordered.begin() + begin);
+        const auto count = static_cast<std::uint32_t>(here.size());
+        bvh_.leaves_[node] = {begin, count, count};
+        continue;
+      }
+      bvh_.links_[at.first_child].first_below = begin;
+      bvh_.links_[at.first_child + 1].first_below = begin + bvh_.links_[at.first_child].count_below;
+      open.push_back(at.first_child);
+      open.push_back(at.first_child + 1);
+    }
+    bvh_.objects_.swap(ordered);
+    bvh_.free_capacities_.clear();
+  }
+
+  /// Children were made after their parents.
+  void set_boxes() {
+    for (std::size_t node = bvh_.nodes_.size(); node-- > 0;) {
+      bvh_.set_box(static_cast<Bvh::NodeIndex>(node));
+    }
+  }
+
+  Bvh& bvh_;
+  std::vector<Item> items_;
+  std::vector<Range> open_;  // nodes that were to be divided, in the order in which they are
+};
+
+void Bvh::build(std::span<const Aabb> boxes) {
+  clear(boxes.size());
+  std::vector<Item> items;
+  items.reserve(boxes.size());
+  for (ObjectId object = 0; object < boxes.size(); ++object) {
+    Place& place = places_[object];
+    place.box = boxes[object];
+    if (place.box.valid()) {
+      items.push_back({place.box, place.box.center(), object});
+    } else {
+      place.node = in_unplaced;
+      place.unplaced = static_cast<std::uint32_t>(unplaced_.size());
+      unplaced_.push_back(object);
+    }
+  }
+  BvhBuilder builder(*this, std::move(items));
+  switch (options_.build) {
+    case Build::top_down:
+      builder.from_ranges(false);
+      break;
+    case Build::packed:
+      builder.from_ranges(true);
+      break;
+    case Build::bottom_up:
+      builder.bottom_up();
+      break;
+    case Build::incremental:
+      builder.incremental();
+      break;
+  }
+  runs_intact_ = true;
+}
+
+}  // namespace vislab
