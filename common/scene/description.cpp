@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <numbers>
+#include <utility>
 
 #include "common/scene/error.h"
 #include "common/scene/settings.h"
@@ -16,11 +18,17 @@ FileSource read_file_source(const Settings& table) {
   return {table.text("package", ""), table.text("file")};
 }
 
-MeshSource read_mesh(const Settings& table) {
+/// Keys of a mesh, which may stand beside others in the same table.
+MeshSource read_mesh_keys(const Settings& table) {
   MeshSource mesh;
   mesh.source = read_file_source(table);
   mesh.simplify_triangles =
       static_cast<std::uint32_t>(table.whole("simplify_triangles", 0, 100'000'000, 0));
+  return mesh;
+}
+
+MeshSource read_mesh(const Settings& table) {
+  MeshSource mesh = read_mesh_keys(table);
   table.done();
   return mesh;
 }
@@ -73,17 +81,94 @@ AsteroidBeltParameters read_asteroid_belt(const Settings& table) {
   return belt;
 }
 
-BoxFieldParameters read_box_field(const Settings& table) {
+/// The keys of fields of boxes and of meshes. `edge_m` gives all boxes one edge length.
+BoxFieldParameters read_field(const Settings& table) {
   BoxFieldParameters field;
   field.count = count_of(table, "count", 1, 10'000'000);
   field.extent_m = table.number("extent_m", 1e-3, huge, field.extent_m);
-  field.min_half_size_m = table.number("min_half_size_m", 1e-6, huge, field.min_half_size_m);
-  field.max_half_size_m =
-      table.number("max_half_size_m", field.min_half_size_m, huge, field.max_half_size_m);
-  field.clear_radius_m =
-      table.number("clear_radius_m", 0.0, 0.5 * field.extent_m, field.clear_radius_m);
+  if (table.has("edge_m")) {
+    field.min_half_size_m = 0.5 * table.number("edge_m", 2e-6, huge);
+    field.max_half_size_m = field.min_half_size_m;
+  } else {
+    field.min_half_size_m = table.number("min_half_size_m", 1e-6, huge, field.min_half_size_m);
+    field.max_half_size_m = table.number("max_half_size_m", field.min_half_size_m, huge,
+                                         std::max(field.min_half_size_m, field.max_half_size_m));
+  }
+  field.clear_radius_m = table.number("clear_radius_m", 0.0, 0.5 * field.extent_m,
+                                      std::min(field.clear_radius_m, 0.5 * field.extent_m));
+  field.rotated = table.flag("rotated", false);
   field.seed = seed_of(table);
   return field;
+}
+
+/// Boxes that reach around the origin from everywhere could never be placed clear of it.
+void require_room(const Settings& table, const BoxFieldParameters& field, const glm::dvec3& shape) {
+  const double reach_m = field.max_half_size_m * glm::length(shape) + field.clear_radius_m;
+  if (field.clear_radius_m > 0.0 && reach_m > field.extent_m) {
+    throw InputError(table.where() + ": half a box's diagonal and `clear_radius_m` are " +
+                     std::to_string(reach_m) + " m together; `extent_m` must be at least that");
+  }
+}
+
+BoxFieldParameters read_box_field(const Settings& table) {
+  BoxFieldParameters field = read_field(table);
+  field.elongation = table.number("elongation", 1.0, 1000.0, field.elongation);
+  field.thickness = table.number("thickness", 0.0, 1.0, field.thickness);
+  field.subdivisions =
+      static_cast<std::uint32_t>(table.whole("subdivisions", 1, 200, field.subdivisions));
+  field.density_ratio = table.number("density_ratio", 1.0, 1e6, field.density_ratio);
+  require_room(table, field, {field.elongation, field.thickness, 1.0 / field.elongation});
+  return field;
+}
+
+MeshFieldSource read_mesh_field(const Settings& table) {
+  MeshFieldSource field;
+  field.parameters = read_field(table);
+  field.mesh = read_mesh(table.table("mesh"));
+  require_room(table, field.parameters, glm::dvec3(1.0));
+  return field;
+}
+
+HousesParameters read_houses(const Settings& table) {
+  HousesParameters houses;
+  houses.count = static_cast<std::uint32_t>(table.whole("count", 1, 10'000, houses.count));
+  houses.min_triangles = count_of(table, "min_triangles", 1, 100'000);
+  houses.max_triangles = count_of(table, "max_triangles",
+                                  std::max<std::int64_t>(houses.min_triangles + 1, 8), 100'000);
+  houses.min_triangles = std::max(houses.min_triangles, 8U);  // no closed house has fewer
+  houses.seed = seed_of(table);
+  return houses;
+}
+
+RibbedSphereSource read_ribbed_sphere(const Settings& table) {
+  RibbedSphereSource sphere;
+  sphere.meridians =
+      static_cast<std::uint32_t>(table.whole("meridians", 3, 10'000, sphere.meridians));
+  sphere.parallels =
+      static_cast<std::uint32_t>(table.whole("parallels", 1, 10'000, sphere.parallels));
+  sphere.ribs = static_cast<std::uint32_t>(table.whole("ribs", 0, 1000, sphere.ribs));
+  return sphere;
+}
+
+PlacedMesh read_placed(const Settings& table) {
+  PlacedMesh placed;
+  if (!table.has("shape")) {
+    placed.mesh = read_mesh_keys(table);
+  } else if (const std::string shape = table.text("shape"); shape == "ribbed_sphere") {
+    placed.mesh = read_ribbed_sphere(table);
+  } else {
+    throw InputError(table.where() + ": " + unknown_name("shape", shape, {"ribbed_sphere"}).what());
+  }
+  const std::string up = table.text("up", "y");
+  if (up != "y" && up != "z") {
+    throw InputError(table.where() + ": `up` is wrong; it must be \"y\" or \"z\"");
+  }
+  placed.z_up = up == "z";
+  placed.at = table.point("at");
+  placed.size_m = table.number("size_m", 1e-6, huge);
+  placed.heading_rad = table.number("heading_deg", -360.0, 360.0, 0.0) * std::numbers::pi / 180.0;
+  table.done();
+  return placed;
 }
 
 CityParameters read_city(const Settings& table) {
@@ -110,19 +195,23 @@ void read_generator(const Settings& table, SceneDescription& scene) {
   const std::string kind = table.text("kind");
   if (kind == "asteroid_belt") {
     scene.source = read_asteroid_belt(table);
-  } else if (kind == "hares") {
-    scene.source = read_hares(table);
   } else if (kind == "box_field") {
     scene.source = read_box_field(table);
   } else if (kind == "city") {
     scene.source = read_city(table);
+  } else if (kind == "hares") {
+    scene.source = read_hares(table);
+  } else if (kind == "houses") {
+    scene.source = read_houses(table);
+  } else if (kind == "mesh_field") {
+    scene.source = read_mesh_field(table);
   } else if (kind == "room_ring") {
     scene.source = read_room_ring(table);
   } else {
-    throw InputError(table.where() + ": " +
-                     unknown_name("generator", kind,
-                                  {"asteroid_belt", "box_field", "city", "hares", "room_ring"})
-                         .what());
+    const InputError unknown = unknown_name(
+        "generator", kind,
+        {"asteroid_belt", "box_field", "city", "hares", "houses", "mesh_field", "room_ring"});
+    throw InputError(table.where() + ": " + unknown.what());
   }
   table.done();
 }
@@ -136,16 +225,24 @@ SceneDescription read_scene_description(const std::filesystem::path& file) {
   scene.folder = file.parent_path();
   scene.description = settings.text("description", "");
   scene.default_path = settings.text("default_path", "");
+  scene.offset = settings.point("offset", glm::dvec3(0.0));
   const bool mesh = settings.has("mesh");
   const bool quake = settings.has("quake3");
+  const bool objects = settings.has("objects");
   const bool generator = settings.has("generator");
   settings.done();
-  if (int{mesh} + int{quake} + int{generator} != 1) {
+  if (int{mesh} + int{quake} + int{objects} + int{generator} != 1) {
     throw InputError(settings.where() +
-                     ": a scene needs exactly one of the tables mesh, quake3 and generator");
+                     ": a scene needs exactly one of the tables mesh, quake3, objects and " +
+                     "generator");
   }
   if (mesh) scene.source = read_mesh(settings.table("mesh"));
   if (quake) scene.source = read_quake(settings.table("quake3"));
+  if (objects) {
+    std::vector<PlacedMesh> placed;
+    for (const Settings& table : settings.tables("objects")) placed.push_back(read_placed(table));
+    scene.source = std::move(placed);
+  }
   if (generator) read_generator(settings.table("generator"), scene);
   return scene;
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "common/scene/generators/generators.h"
 
@@ -14,11 +15,15 @@ namespace vislab {
 struct FileSource {
   std::string package;  // empty: none
   std::string file;
+
+  friend bool operator==(const FileSource&, const FileSource&) = default;
 };
 
 struct MeshSource {
   FileSource source;
   std::uint32_t simplify_triangles = 0;  // 0: as it is
+
+  friend bool operator==(const MeshSource&, const MeshSource&) = default;
 };
 
 struct QuakeSource {
@@ -31,13 +36,36 @@ struct HaresSource {
   HaresParameters parameters;
 };
 
+/// Instances of a mesh, at random in a cube.
+struct MeshFieldSource {
+  MeshSource mesh;
+  BoxFieldParameters parameters;
+};
+
+struct RibbedSphereSource {
+  std::uint32_t meridians = 100, parallels = 50, ribs = 10;
+
+  friend bool operator==(const RibbedSphereSource&, const RibbedSphereSource&) = default;
+};
+
+/// One mesh, and where it stands.
+struct PlacedMesh {
+  std::variant<MeshSource, RibbedSphereSource> mesh;
+  bool z_up = false;         // the mesh's z axis is up, not y
+  glm::dvec3 at{0.0};        // middle of the lower side of its box
+  double size_m = 1.0;       // longest side of the mesh's box
+  double heading_rad = 0.0;  // counter-clockwise about the vertical, seen from above
+};
+
 struct SceneDescription {
   std::string name;  // the file's stem
   std::filesystem::path folder;
   std::string description;
   std::string default_path;  // empty: fitted to the scene
-  std::variant<MeshSource, QuakeSource, HaresSource, AsteroidBeltParameters, BoxFieldParameters,
-               CityParameters, RoomRingParameters>
+  glm::dvec3 offset{0.0};    // added to all objects' places, metres
+  std::variant<MeshSource, QuakeSource, std::vector<PlacedMesh>, HaresSource, MeshFieldSource,
+               AsteroidBeltParameters, BoxFieldParameters, CityParameters, HousesParameters,
+               RoomRingParameters>
       source;
 };
 

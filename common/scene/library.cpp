@@ -1,11 +1,15 @@
 #include "common/scene/library.h"
 
 #include <algorithm>
+#include <limits>
+#include <utility>
+#include <variant>
 
 #include "common/scene/description.h"
 #include "common/scene/error.h"
 #include "common/scene/file_bytes.h"
 #include "common/scene/mesh_import.h"
+#include "common/scene/orientation.h"
 #include "common/scene/quake_world.h"
 #include "common/scene/simplify.h"
 
@@ -36,6 +40,23 @@ std::filesystem::path located(const FileSource& source, const SceneDescription& 
   return file;
 }
 
+/// The mesh turned upright and to its heading, scaled, and put on its place.
+glm::dmat4x3 placement(const PlacedMesh& placed, const Mesh& mesh) {
+  glm::dmat3 turn = rotation({0.0, 1.0, 0.0}, placed.heading_rad);
+  if (placed.z_up) turn = turn * glm::dmat3({1.0, 0.0, 0.0}, {0.0, 0.0, -1.0}, {0.0, 1.0, 0.0});
+  const glm::dvec3 half = bounds_of(mesh.positions).half_size();
+  turn *= 0.5 * placed.size_m / std::max({half.x, half.y, half.z});
+  glm::dvec3 low(std::numeric_limits<double>::infinity());
+  glm::dvec3 high = -low;
+  for (const glm::vec3& position : mesh.positions) {
+    const glm::dvec3 p = turn * glm::dvec3(position);
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  const glm::dvec3 foot(0.5 * (low.x + high.x), low.y, 0.5 * (low.z + high.z));
+  return {turn[0], turn[1], turn[2], placed.at - foot};
+}
+
 /// Makes the scene that a description names; one overload for each source.
 class Maker {
  public:
@@ -58,19 +79,48 @@ class Maker {
   Scene operator()(const QuakeSource& quake) const {
     return import_quake_world(located(quake.source, scene_, folders_));
   }
-  Scene operator()(const HaresSource& hares) const {
-    Scene scene = (*this)(hares.mesh);
-    if (scene.meshes.size() != 1) {
-      throw InputError("scene " + scene_.name + ": hares are made of a file with a single mesh");
+  Scene operator()(const std::vector<PlacedMesh>& placed) const {
+    Scene scene;
+    std::vector<std::variant<MeshSource, RibbedSphereSource>> known;
+    for (const PlacedMesh& one : placed) {
+      const auto found = std::find(known.begin(), known.end(), one.mesh);
+      const auto mesh = static_cast<MeshId>(found - known.begin());
+      if (found == known.end()) {
+        known.push_back(one.mesh);
+        scene.meshes.push_back(
+            std::visit([&](const auto& source) { return mesh_of(source); }, one.mesh));
+      }
+      scene.objects.push_back({mesh, placement(one, scene.meshes[mesh]), none_id});
     }
-    return make_hares(std::move(scene.meshes[0]), hares.parameters);
+    return scene;
   }
+  Scene operator()(const HaresSource& hares) const {
+    return make_hares(mesh_of(hares.mesh), hares.parameters);
+  }
+  Scene operator()(const MeshFieldSource& field) const {
+    return make_mesh_field(mesh_of(field.mesh), field.parameters);
+  }
+  Scene operator()(const HousesParameters& houses) const { return make_houses(houses); }
   Scene operator()(const AsteroidBeltParameters& belt) const { return make_asteroid_belt(belt); }
   Scene operator()(const BoxFieldParameters& field) const { return make_box_field(field); }
   Scene operator()(const CityParameters& city) const { return make_city(city); }
   Scene operator()(const RoomRingParameters& ring) const { return make_room_ring(ring); }
 
  private:
+  Mesh mesh_of(const MeshSource& source) const {
+    Scene scene = (*this)(source);
+    if (scene.meshes.size() != 1) {
+      throw InputError("scene " + scene_.name + ": " + source.source.file + " has " +
+                       std::to_string(scene.meshes.size()) + " meshes; it must have a single one");
+    }
+    // finish() refuses broken meshes, which must not reach what places them.
+    scene.finish();
+    return std::move(scene.meshes[0]);
+  }
+  Mesh mesh_of(const RibbedSphereSource& sphere) const {
+    return ribbed_sphere_mesh(sphere.meridians, sphere.parallels, sphere.ribs);
+  }
+
   const SceneDescription& scene_;
   const DataFolders& folders_;
 };
@@ -79,6 +129,13 @@ LoadedScene load_described(const std::filesystem::path& file, const DataFolders&
   const SceneDescription description = read_scene_description(file);
   LoadedScene loaded;
   loaded.scene = std::visit(Maker(description, folders), description.source);
+  if (description.offset != glm::dvec3(0.0)) {
+    if (!loaded.scene.cells.empty() || loaded.scene.quake) {
+      throw InputError("scene " + description.name +
+                       ": `offset` is not for scenes with cells, which keep their places");
+    }
+    for (Object& object : loaded.scene.objects) object.transform[3] += description.offset;
+  }
   loaded.scene.name = description.name;
   loaded.default_path = description.default_path;
   loaded.description = description.description;

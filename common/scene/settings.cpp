@@ -144,6 +144,21 @@ Settings Settings::table(const std::string& key) const {
   return {state, where_ + ", " + key};
 }
 
+std::vector<Settings> Settings::tables(const std::string& key) const {
+  const toml::node* const node = state_->find(key);
+  const toml::array* const list = node == nullptr ? nullptr : node->as_array();
+  const std::string right = "a list of tables";
+  if (list == nullptr || list->empty()) fail(where_, key, node, right);
+  std::vector<Settings> tables;
+  for (const toml::node& element : *list) {
+    if (!element.is_table()) fail(where_, key, node, right);
+    auto state = std::make_shared<State>();
+    state->table = *element.as_table();
+    tables.push_back({state, where_ + ", " + key + " " + std::to_string(tables.size())});
+  }
+  return tables;
+}
+
 void Settings::done() const {
   for (const auto& [key, value] : state_->table) {
     const std::string name(key.str());

@@ -36,6 +36,8 @@ class Settings {
   /// [[x, y, z], …]
   std::vector<glm::dvec3> points(const std::string& key) const;
   Settings table(const std::string& key) const;
+  /// [[key]] … [[key]]; at least one.
+  std::vector<Settings> tables(const std::string& key) const;
 
   void done() const;
   /// File and table, to begin messages with.

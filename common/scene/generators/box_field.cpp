@@ -1,7 +1,11 @@
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "common/geometry/random.h"
 #include "common/scene/generators/generators.h"
+#include "common/scene/orientation.h"
 
 namespace vislab {
 
@@ -24,23 +28,121 @@ glm::dmat4x3 box_transform(const glm::dvec3& center, const glm::dvec3& half_size
   return transform;
 }
 
-Scene make_box_field(const BoxFieldParameters& parameters) {
-  Scene scene;
-  scene.meshes.push_back(cube_mesh());
-  scene.objects.reserve(parameters.count);
-  Random random(parameters.seed);
-  while (scene.objects.size() < parameters.count) {
+namespace {
+
+/// Places from -1 to 1 whose distances grow from the first to the last by `growth`.
+std::vector<double> cuts(std::uint32_t subdivisions, double growth) {
+  std::vector<double> places{0.0};
+  for (std::uint32_t i = 0; i < subdivisions; ++i) {
+    const double share = subdivisions > 1 ? i / (subdivisions - 1.0) : 0.0;
+    places.push_back(places.back() + std::pow(growth, share));
+  }
+  const double length = places.back();
+  for (double& place : places) place = 2.0 * place / length - 1.0;
+  places.back() = 1.0;
+  return places;
+}
+
+/// A box of the shape, in a random place and, if it is wanted, orientation, clear of the origin.
+/// `shape` are half sizes before scaling; `uniform` scales all axes alike.
+glm::dmat4x3 random_box(const BoxFieldParameters& parameters, const glm::dvec3& shape, bool uniform,
+                        Random& random) {
+  while (true) {
     glm::dvec3 center;
-    glm::dvec3 half_size;
+    glm::dvec3 scale;
     for (int axis = 0; axis < 3; ++axis) {
       center[axis] = random.uniform(-parameters.extent_m, parameters.extent_m);
     }
     for (int axis = 0; axis < 3; ++axis) {
-      half_size[axis] = random.uniform(parameters.min_half_size_m, parameters.max_half_size_m);
+      scale[axis] = random.uniform(parameters.min_half_size_m, parameters.max_half_size_m);
     }
-    const glm::dvec3 gap = glm::max(glm::abs(center) - half_size, 0.0);
-    if (glm::length(gap) < parameters.clear_radius_m) continue;
-    scene.objects.push_back({0, box_transform(center, half_size), none_id});
+    if (uniform) scale = glm::dvec3(scale.x);
+    const glm::dvec3 half = shape * scale;
+    const double nearest = parameters.rotated ? glm::length(center) - glm::length(half)
+                                              : glm::length(glm::max(glm::abs(center) - half, 0.0));
+    if (nearest < parameters.clear_radius_m) continue;
+    glm::dmat4x3 transform = box_transform(center, scale);
+    if (parameters.rotated) {
+      const glm::dmat3 turn = random_rotation(random);
+      for (int axis = 0; axis < 3; ++axis) transform[axis] = turn[axis] * scale[axis];
+    }
+    return transform;
+  }
+}
+
+}  // namespace
+
+Mesh box_mesh(const glm::dvec3& half_size, std::uint32_t subdivisions, double density_ratio) {
+  const std::vector<double> places = cuts(subdivisions, std::sqrt(density_ratio));
+  const std::uint32_t n = subdivisions + 1;
+  std::vector<std::uint32_t> numbers(static_cast<std::size_t>(n) * n * n, none_id);
+  Mesh mesh;
+  mesh.name = "box";
+  const auto vertex = [&](const glm::uvec3& at) {
+    std::uint32_t& number = numbers[(static_cast<std::size_t>(at.z) * n + at.y) * n + at.x];
+    if (number == none_id) {
+      number = static_cast<std::uint32_t>(mesh.positions.size());
+      mesh.positions.emplace_back(half_size.x * places[at.x], half_size.y * places[at.y],
+                                  half_size.z * places[at.z]);
+    }
+    return number;
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    if (half_size.y == 0.0 && axis != 1) continue;
+    for (const bool far_side : {false, true}) {
+      if (half_size.y == 0.0 && !far_side) continue;
+      // u, v and the outward normal are right-handed.
+      const int u = (axis + (far_side ? 1 : 2)) % 3;
+      const int v = (axis + (far_side ? 2 : 1)) % 3;
+      for (std::uint32_t i = 0; i < subdivisions; ++i) {
+        for (std::uint32_t j = 0; j < subdivisions; ++j) {
+          glm::uvec3 at(0U);
+          at[axis] = far_side ? subdivisions : 0;
+          at[u] = i;
+          at[v] = j;
+          const std::uint32_t a = vertex(at);
+          at[u] = i + 1;
+          const std::uint32_t b = vertex(at);
+          at[v] = j + 1;
+          const std::uint32_t c = vertex(at);
+          at[u] = i;
+          const std::uint32_t d = vertex(at);
+          mesh.triangles.emplace_back(a, b, c);
+          mesh.triangles.emplace_back(a, c, d);
+        }
+      }
+    }
+  }
+  return mesh;
+}
+
+Scene make_box_field(const BoxFieldParameters& parameters) {
+  const glm::dvec3 shape(parameters.elongation, parameters.thickness, 1.0 / parameters.elongation);
+  const bool plain = shape == glm::dvec3(1.0) && parameters.subdivisions == 1;
+  Scene scene;
+  scene.meshes.push_back(
+      plain ? cube_mesh() : box_mesh(shape, parameters.subdivisions, parameters.density_ratio));
+  scene.objects.reserve(parameters.count);
+  Random random(parameters.seed);
+  while (scene.objects.size() < parameters.count) {
+    scene.objects.push_back({0, random_box(parameters, shape, false, random), none_id});
+  }
+  return scene;
+}
+
+Scene make_mesh_field(Mesh mesh, const BoxFieldParameters& parameters) {
+  const Aabb box = bounds_of(mesh.positions);
+  const glm::dvec3 half = box.half_size();
+  const double unit = 1.0 / std::max({half.x, half.y, half.z});
+  Scene scene;
+  scene.meshes.push_back(std::move(mesh));
+  scene.objects.reserve(parameters.count);
+  Random random(parameters.seed);
+  while (scene.objects.size() < parameters.count) {
+    glm::dmat4x3 transform = random_box(parameters, half * unit, true, random);
+    for (int axis = 0; axis < 3; ++axis) transform[axis] *= unit;
+    transform[3] -= glm::dmat3(transform) * box.center();
+    scene.objects.push_back({0, transform, none_id});
   }
   return scene;
 }

@@ -19,12 +19,28 @@ struct BoxFieldParameters {
   double extent_m = 500.0;  // centres lie in the cube from -extent to extent
   double min_half_size_m = 0.2, max_half_size_m = 2.0;
   double clear_radius_m = 5.0;  // no box comes as near to the origin, where cameras stand
+  bool rotated = false;         // each box in a random orientation of its own
+  // The boxes' shape before it is scaled: half sizes elongation, thickness and 1 / elongation.
+  double elongation = 1.0;         // 2 gives 2 : 1 : 0.5
+  double thickness = 1.0;          // 0 gives a rectangle that faces up
+  std::uint32_t subdivisions = 1;  // of each edge
+  double density_ratio =
+      1.0;  // vertices per area at the corner (-, -, -) to those at the opposite one
   std::uint64_t seed = 1;
 };
 
-/// Axis-aligned boxes, uniform in a cube, that share one mesh. Needs max_half_size and clear_radius
-/// well below the extent.
+/// Boxes, uniform in a cube, that share one mesh; axis-aligned unless `rotated`. Needs half
+/// diagonals and clear_radius well below the extent.
 Scene make_box_field(const BoxFieldParameters& parameters);
+
+/// The same of a mesh: `half sizes` are then half of the longest side of its box, one number for
+/// each instance, and the boxes' shape and tessellation do not count. `mesh` must have triangles.
+Scene make_mesh_field(Mesh mesh, const BoxFieldParameters& parameters);
+
+/// The surface of a box about the origin, each edge cut into `subdivisions`. The cuts lie so that
+/// the number of vertices per area of a face's corner nearest to (-, -, -) is `density_ratio` times
+/// that of the opposite one, about. Closed; a box of no height is only its upper face.
+Mesh box_mesh(const glm::dvec3& half_size, std::uint32_t subdivisions, double density_ratio);
 
 struct HaresParameters {
   std::uint32_t count = 14;
@@ -88,5 +104,25 @@ Scene make_asteroid_belt(const AsteroidBeltParameters& parameters);
 /// 1) triangles. The two ends of each circle of latitude are vertices of their own at equal
 /// positions, and so are those of a pole.
 Mesh asteroid_mesh(std::uint32_t detail, double relief, std::uint64_t seed);
+
+struct HousesParameters {
+  std::uint32_t count = 100;
+  std::uint32_t min_triangles = 8, max_triangles = 2000;  // of a house; even numbers are drawn
+  std::uint64_t seed = 1;
+};
+
+/// Houses, each a mesh of its own, on a square of streets with a pitch of 25 m about the origin, on
+/// the plane y = 0, turned and shifted a little at random. Needs an even number from 8 on between
+/// min_triangles and max_triangles.
+Scene make_houses(const HousesParameters& parameters);
+
+/// A house on the plane y = 0, at most 17 m by 14 m: a tent or a box below 18 triangles, above that
+/// with a gable roof, and windows above about 80. Closed; `triangles` must be even and at least 8.
+Mesh house_mesh(std::uint32_t triangles, std::uint64_t seed);
+
+/// A flattened sphere of radius 1 with ribs from pole to pole, like a pumpkin: 2 * meridians *
+/// parallels triangles, meridians * parallels + 2 vertices; closed. Needs 3 meridians and 1
+/// parallel.
+Mesh ribbed_sphere_mesh(std::uint32_t meridians, std::uint32_t parallels, std::uint32_t ribs);
 
 }  // namespace vislab
