@@ -2,8 +2,8 @@
 //   the farthest point from the centre as it is stored, rounded up.
 // Guarantee: every point is enclosed in exact arithmetic.
 // Cost: O(points).
-// Limits: neither sphere is the smallest; Ritter's is about 5 % larger, and can be 20 %.
-// Sources: Ritter 1990; Kowalka 2016, 2.6.1.
+// Limits: neither sphere is the smallest.
+// Sources: Ritter 1990; Ericson 2005; Kowalka 2016, 2.6.1.
 #include "common/geometry/bounding_spheres.h"
 
 #include <array>
@@ -32,6 +32,22 @@ Sphere through_farthest(const glm::dvec3& center, std::span<const glm::vec3> poi
   return {rounded, round_up(std::sqrt(farthest) * (1.0 + 4.0 * epsilon))};
 }
 
+/// A sphere while it grows.
+struct Growing {
+  glm::dvec3 center;
+  double radius;
+
+  void hold(const glm::vec3& point) {
+    const glm::dvec3 p(point);
+    const double squared = squared_distance(p, center);
+    if (squared <= radius * radius) return;
+    // Grow by half of what is missing, away from the far side, which stays where it is.
+    const double distance = std::sqrt(squared);
+    radius = (radius + distance) * 0.5;
+    center += (p - center) * ((distance - radius) / distance);
+  }
+};
+
 }  // namespace
 
 Sphere farthest_point_sphere(std::span<const glm::vec3> points) {
@@ -39,7 +55,7 @@ Sphere farthest_point_sphere(std::span<const glm::vec3> points) {
   return through_farthest(bounds_of(points).center(), points);
 }
 
-Sphere ritter_sphere(std::span<const glm::vec3> points) {
+Sphere ritter_sphere(std::span<const glm::vec3> points, int refinements) {
   if (points.empty()) return {glm::vec3(0.0F), -1.0F};
   std::array<glm::dvec3, 3> lowest;
   std::array<glm::dvec3, 3> highest;
@@ -60,18 +76,21 @@ Sphere ritter_sphere(std::span<const glm::vec3> points) {
       longest = axis;
     }
   }
-  glm::dvec3 center = (lowest[longest] + highest[longest]) * 0.5;
-  double radius = std::sqrt(squared_distance(highest[longest], center));
-  for (const glm::vec3& point : points) {
-    const glm::dvec3 p(point);
-    const double squared = squared_distance(p, center);
-    if (squared <= radius * radius) continue;
-    // Grow by half of what is missing, away from the far side, which stays where it is.
-    const double distance = std::sqrt(squared);
-    radius = (radius + distance) * 0.5;
-    center += (p - center) * ((distance - radius) / distance);
+  Growing sphere{(lowest[longest] + highest[longest]) * 0.5, 0.0};
+  sphere.radius = std::sqrt(squared_distance(highest[longest], sphere.center));
+  for (const glm::vec3& point : points) sphere.hold(point);
+  Sphere smallest = through_farthest(sphere.center, points);
+  for (int round = 0; round < refinements; ++round) {
+    // A tenth less lets the centre go where the points pull it, from the other end every second
+    // time.
+    sphere.radius *= 0.9;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      sphere.hold(points[round % 2 == 0 ? points.size() - 1 - i : i]);
+    }
+    const Sphere refined = through_farthest(sphere.center, points);
+    if (refined.radius < smallest.radius) smallest = refined;
   }
-  return through_farthest(center, points);
+  return smallest;
 }
 
 Sphere transformed(const Sphere& sphere, const glm::dmat4x3& transform) {

@@ -49,6 +49,7 @@ double distance_squared(const Aabb& box, const glm::dvec3& p) {
 }
 
 Sphere circumscribed(const Aabb& box) {
+  if (!box.valid()) return {glm::vec3(0.0F), std::numeric_limits<float>::quiet_NaN()};
   const glm::vec3 center(box.center());
   // The float centre is off the double one: the radius is measured from the float centre.
   const glm::dvec3 c(center);

@@ -70,7 +70,8 @@ struct Sphere {
   float radius = 0.0F;
 };
 
-/// The sphere around the box's centre through its corners, radius rounded up.
+/// The sphere around the box's centre through its corners, radius rounded up. If the box is not valid
+/// the radius is NaN, and no test culls it.
 Sphere circumscribed(const Aabb& box);
 
 }  // namespace vislab
