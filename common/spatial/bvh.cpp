@@ -31,21 +31,18 @@ bool holds(const Aabb& outer, const Aabb& inner) {
 
 }  // namespace
 
-Bvh::Bvh(const Options& options) : options_(options) {
-  options_.leaf_objects = std::max(options_.leaf_objects, 1U);
-  clear(0);
+Bvh::Bvh(const Limits& limits) : limits_(limits) {
+  limits_.leaf_objects = std::max(limits_.leaf_objects, 1U);
+  clear_tree();
 }
 
-void Bvh::clear(std::size_t object_count) {
+void Bvh::clear_tree() {
   nodes_.assign(1, {});
   links_.assign(1, {});
   leaves_.assign(1, {});
   objects_.clear();
-  places_.assign(object_count, {});
-  unplaced_.clear();
   free_pairs_.clear();
   free_capacities_.clear();
-  moved_.clear();
   runs_intact_ = false;
 }
 
@@ -84,13 +81,13 @@ void Bvh::move(ObjectId object, const Aabb& box) {
   }
   Place& place = places_[object];
   const bool stays = place.node != in_unplaced && box.valid();
-  if (!stays || options_.motion == Motion::reinsert) {
+  if (!stays || limits_.motion == Motion::reinsert) {
     remove(object);
     insert(object, box);
     return;
   }
   place.box = box;
-  if (options_.motion == Motion::refit) {
+  if (limits_.motion == Motion::refit || limits_.motion == Motion::rebuild) {
     if (!place.moved) moved_.push_back(object);
     place.moved = true;
     return;
@@ -102,7 +99,13 @@ void Bvh::move(ObjectId object, const Aabb& box) {
 }
 
 void Bvh::finish_changes() {
-  if (!moved_.empty()) refit_moved();
+  if (moved_.empty()) return;
+  if (limits_.motion == Motion::rebuild) {
+    for (const ObjectId object : moved_) places_[object].moved = false;
+    build_tree();
+  } else {
+    refit_moved();
+  }
   moved_.clear();
 }
 
@@ -210,7 +213,7 @@ void Bvh::put_in_tree(ObjectId object) {
   runs_intact_ = false;
   const Aabb& box = places_[object].box;
   NodeIndex node = links_[root].count_below == 0 ? root : best_sibling(box);
-  if (nodes_[node].child_count == 0 && leaves_[node].count < options_.leaf_objects) {
+  if (nodes_[node].child_count == 0 && leaves_[node].count < limits_.leaf_objects) {
     add_to_leaf(node, object);
   } else {
     make_sibling(node, object);
@@ -227,7 +230,7 @@ void Bvh::add_to_leaf(NodeIndex node, ObjectId object) {
     std::uint32_t first;
     if (free_capacities_.empty()) {
       first = static_cast<std::uint32_t>(objects_.size());
-      objects_.resize(objects_.size() + options_.leaf_objects, none_id);
+      objects_.resize(objects_.size() + limits_.leaf_objects, none_id);
     } else {
       first = free_capacities_.back();
       free_capacities_.pop_back();
@@ -235,7 +238,7 @@ void Bvh::add_to_leaf(NodeIndex node, ObjectId object) {
     std::copy_n(objects_.begin() + leaf.first, leaf.count, objects_.begin() + first);
     free_leaf_memory(node);
     leaf.first = first;
-    leaf.capacity = options_.leaf_objects;
+    leaf.capacity = limits_.leaf_objects;
   }
   objects_[leaf.first + leaf.count++] = object;
   places_[object].node = node;
@@ -244,7 +247,7 @@ void Bvh::add_to_leaf(NodeIndex node, ObjectId object) {
 void Bvh::free_leaf_memory(NodeIndex node) {
   // Smaller pieces were made by build(), and stay unused until the next.
   const Leaf& leaf = leaves_[node];
-  if (leaf.capacity == options_.leaf_objects) free_capacities_.push_back(leaf.first);
+  if (leaf.capacity == limits_.leaf_objects) free_capacities_.push_back(leaf.first);
 }
 
 void Bvh::make_sibling(NodeIndex node, ObjectId object) {

@@ -8,8 +8,8 @@
 //   the sum of surface areas grow least, found by branch and bound (Bittner, Hapala and Havran
 //   2013), in shuffled order. Packed: halves of the Z curve (Lauterbach et al. 2009).
 // Motion: the boxes of moved leaves and their ancestors are computed anew (refit), made larger but
-//   never smaller (enlarge), or the object is removed and inserted from the root (reinsert); the
-//   last two are Kowalka 2016, 2.5.2.
+//   never smaller (enlarge), the object is removed and inserted from the root (reinsert), or the
+//   tree is built anew (rebuild). Enlarging and reinserting are Kowalka 2016, 2.5.2.
 // Cost: top-down O(n log n), bottom-up about O(n), packed O(n), insertion usually O(log n), removal
 //   O(depth), refit O(moved leaves and their ancestors).
 // Limits: refitted and enlarged trees get worse as objects mix. Memory grows with the largest id.
@@ -26,14 +26,14 @@ namespace vislab {
 class Bvh : public SpatialStructure {
  public:
   enum class Build { top_down, bottom_up, incremental, packed };
-  enum class Motion { refit, enlarge, reinsert };
-  struct Options {
+  enum class Motion { refit, enlarge, reinsert, rebuild };
+  struct Limits {
     Build build = Build::top_down;
     Motion motion = Motion::refit;
     std::uint32_t leaf_objects = 4;  // a leaf has at most so many; at least 1
   };
 
-  explicit Bvh(const Options& options);
+  explicit Bvh(const Limits& limits);
 
   void build(std::span<const Aabb> boxes) override;
   void insert(ObjectId object, const Aabb& box) override;
@@ -81,7 +81,8 @@ class Bvh : public SpatialStructure {
     NodeIndex node;
   };
 
-  void clear(std::size_t object_count);
+  void clear_tree();
+  void build_tree();
   NodeIndex add_pair(NodeIndex parent);
   void set_box(NodeIndex node);
   void put_in_tree(ObjectId object);
@@ -97,7 +98,7 @@ class Bvh : public SpatialStructure {
   void replace_by_sibling(NodeIndex leaf);
   void refit_moved();
 
-  Options options_;
+  Limits limits_;
   std::vector<SpatialNode> nodes_;  // the root, then pairs of siblings
   std::vector<Links> links_;        // by node
   std::vector<Leaf> leaves_;        // by node; inner nodes have no objects

@@ -151,7 +151,7 @@ class BvhBuilder {
 
   void from_ranges(bool along_curve) {
     if (along_curve) sort_along_curve(items_);
-    const std::size_t leaf_objects = bvh_.options_.leaf_objects;
+    const std::size_t leaf_objects = bvh_.limits_.leaf_objects;
     split_range(Bvh::root, 0, items_.size());
     for (std::size_t i = 0; i < open_.size(); ++i) {
       const auto [node, begin, end] = open_[i];
@@ -219,7 +219,7 @@ class BvhBuilder {
   void split_range(Bvh::NodeIndex node, std::size_t begin, std::size_t end) {
     if (begin == 0 && end == items_.size()) bvh_.objects_.resize(items_.size());
     set_run(node, begin, end);
-    if (end - begin > bvh_.options_.leaf_objects) {
+    if (end - begin > bvh_.limits_.leaf_objects) {
       open_.push_back({node, begin, end});
     } else {
       fill_leaf(node, begin, end);
@@ -280,7 +280,7 @@ class BvhBuilder {
       const auto [node, index, begin] = open[i];
       const Cluster& cluster = clusters[index];
       set_run(node, begin, begin + cluster.count);
-      if (cluster.count <= bvh_.options_.leaf_objects) {
+      if (cluster.count <= bvh_.limits_.leaf_objects) {
         gather(clusters, index, ordered.data() + begin);
         leaves.push_back(open[i]);
       } else {
@@ -342,22 +342,33 @@ class BvhBuilder {
 };
 
 void Bvh::build(std::span<const Aabb> boxes) {
-  clear(boxes.size());
-  std::vector<Item> items;
-  items.reserve(boxes.size());
+  places_.assign(boxes.size(), {});
+  unplaced_.clear();
+  moved_.clear();
   for (ObjectId object = 0; object < boxes.size(); ++object) {
     Place& place = places_[object];
     place.box = boxes[object];
     if (place.box.valid()) {
-      items.push_back({place.box, place.box.center(), object});
+      place.node = root;
     } else {
       place.node = in_unplaced;
       place.unplaced = static_cast<std::uint32_t>(unplaced_.size());
       unplaced_.push_back(object);
     }
   }
+  build_tree();
+}
+
+void Bvh::build_tree() {
+  clear_tree();
+  std::vector<Item> items;
+  items.reserve(places_.size());
+  for (ObjectId object = 0; object < places_.size(); ++object) {
+    const Place& place = places_[object];
+    if (place.node < in_unplaced) items.push_back({place.box, place.box.center(), object});
+  }
   BvhBuilder builder(*this, std::move(items));
-  switch (options_.build) {
+  switch (limits_.build) {
     case Build::top_down:
       builder.from_ranges(false);
       break;

@@ -214,7 +214,7 @@ void WideBvh::query(const Frustum& frustum, std::span<const Aabb> boxes,
   out.runs.clear();
   out.places.clear();
   out.undecided.clear();
-  if (out.loose.size() < state_.size() + width) out.loose.resize(state_.size() + width);
+  if (out.loose.size() < state_.size() + width) reserve(out);
   walk_wide_bvh({nodes_.data(), leaves_.data(), objects_.data()},
                 FrustumFilter(frustum, origin_, limit_), options,
                 absent_count_ == 0 ? shortest_run : 0, out);
@@ -236,6 +236,21 @@ void WideBvh::query(const Frustum& frustum, std::span<const Aabb> boxes,
     if ((state_[object] & present) != 0) decide(object);
   }
   if (out.loose_count > 0) out.runs.emplace_back(out.loose.data(), out.loose_count);
+}
+
+void WideBvh::reserve(WideSelection& out) const {
+  const std::size_t objects = state_.size();
+  out.loose.resize(objects + width);
+  // Long runs have that many objects, or, while there are absent ones, end at a node's border.
+  out.runs.reserve(objects / shortest_run + 1);
+  out.places.reserve(nodes_.size() * width);
+  out.pending.reserve(nodes_.size() + width);
+  out.undecided.reserve(objects);
+}
+
+std::size_t WideSelection::bytes() const {
+  const auto size = [](const auto& values) { return values.capacity() * sizeof(values[0]); };
+  return size(runs) + size(pending) + size(places) + size(undecided) + size(loose);
 }
 
 std::size_t WideBvh::bytes() const {

@@ -70,6 +70,8 @@ struct WideSelection {
   std::vector<ObjectId> undecided;  // objects that float could not decide
   std::vector<ObjectId> loose;      // what is in no long run: its first loose_count
   std::size_t loose_count = 0;
+
+  std::size_t bytes() const;
 };
 
 class WideBvh {
@@ -90,6 +92,10 @@ class WideBvh {
   /// The same with the hierarchy of `tree`, which must hold those objects, each once, in leaves of
   /// at most eight; nodes with at most eight children. Throws std::logic_error for others.
   void build(std::span<const Aabb> boxes, const SpatialStructure& tree);
+  /// The same objects at new places: those that were not present stay so. No memory is taken that
+  /// an equal build did not take.
+  void rebuild(std::span<const Aabb> boxes, Order order);
+  void rebuild(std::span<const Aabb> boxes, const SpatialStructure& tree);
 
   /// An object that is not present is in no query's answer.
   void set_present(ObjectId object, const Aabb& box, bool present);
@@ -111,6 +117,9 @@ class WideBvh {
   void query(const Frustum& frustum, std::span<const Aabb> boxes, const QueryOptions& options,
              WideSelection& out) const;
 
+  /// Takes the memory that a selection can ever need.
+  void reserve(WideSelection& out) const;
+
   std::size_t bytes() const;
   /// Throws std::logic_error that says what is broken. For tests; O(n).
   void audit(std::span<const Aabb> boxes) const;
@@ -120,7 +129,9 @@ class WideBvh {
   static constexpr std::uint32_t nowhere = 0xFFFFFFFFU;
   enum State : std::uint8_t { present = 1, apart = 2, listed_apart = 4 };
 
-  void start(std::span<const Aabb> boxes);
+  void start(std::span<const Aabb> boxes, bool forget);
+  void pack(std::span<const Aabb> boxes, Order order);
+  void collapse(std::span<const Aabb> boxes, const SpatialStructure& tree);
   void finish_build(std::span<const Aabb> boxes);
   bool fits(const Aabb& box) const;
   void write_box(ObjectId object, const Aabb& box);

@@ -253,7 +253,12 @@ class WideBvhBuilder {
   std::vector<Source> open_;
 };
 
-void WideBvh::start(std::span<const Aabb> boxes) {
+void WideBvh::start(std::span<const Aabb> boxes, bool forget) {
+  if (forget) {
+    state_.assign(boxes.size(), present);
+  } else {
+    for (std::uint8_t& state : state_) state &= present;
+  }
   origin_ = middle_of(boxes);
   limit_ = reach_of(boxes, origin_);
   nodes_.clear();
@@ -265,7 +270,6 @@ void WideBvh::start(std::span<const Aabb> boxes) {
   apart_changed_ = false;
   absent_count_ = 0;
   slot_.assign(boxes.size(), nowhere);
-  state_.assign(boxes.size(), present);
   // Memory for everything that later changes might need.
   objects_.reserve(boxes.size() + width);
   apart_.reserve(boxes.size());
@@ -280,6 +284,7 @@ void WideBvh::finish_build(std::span<const Aabb> boxes) {
     empty.bounds[i].fill(i < 3 ? nothing : -nothing);
   }
   leaves_.assign(leaf_count, empty);
+  absent_bits_.assign(placed / 64 + 1, 0);
   for (WideNode& node : nodes_) node.boxes = empty;
   for (std::uint32_t leaf = 0; leaf < leaf_count; ++leaf) {
     const std::uint32_t parent = leaf_parent_[leaf];
@@ -287,7 +292,11 @@ void WideBvh::finish_build(std::span<const Aabb> boxes) {
     for (std::uint32_t place = first_place_[leaf]; place < end; ++place) {
       const ObjectId object = objects_[place];
       slot_[object] = leaf * width + (place - first_place_[leaf]);
-      write_box(object, boxes[object]);
+      if ((state_[object] & present) != 0) {
+        write_box(object, boxes[object]);
+      } else {
+        set_absent_bit(object, true);
+      }
     }
   }
   objects_.resize(placed + width, none_id);  // kernels read eight at once
@@ -296,7 +305,6 @@ void WideBvh::finish_build(std::span<const Aabb> boxes) {
     state_[object] |= apart | listed_apart;
     apart_.push_back(object);
   }
-  absent_bits_.assign(placed / 64 + 1, 0);
   dirty_leaves_.assign(leaf_count / 64 + 1, 0);
   dirty_nodes_.assign(nodes_.size() / 64 + 1, 0);
   for (std::size_t leaf = 0; leaf < leaf_count; ++leaf) {
@@ -308,7 +316,16 @@ void WideBvh::finish_build(std::span<const Aabb> boxes) {
 }
 
 void WideBvh::build(std::span<const Aabb> boxes, Order order) {
-  start(boxes);
+  start(boxes, true);
+  pack(boxes, order);
+}
+
+void WideBvh::rebuild(std::span<const Aabb> boxes, Order order) {
+  start(boxes, false);
+  pack(boxes, order);
+}
+
+void WideBvh::pack(std::span<const Aabb> boxes, Order order) {
   items_.clear();
   Aabb centers;
   for (ObjectId object = 0; object < boxes.size(); ++object) {
@@ -334,7 +351,16 @@ void WideBvh::build(std::span<const Aabb> boxes, Order order) {
 }
 
 void WideBvh::build(std::span<const Aabb> boxes, const SpatialStructure& tree) {
-  start(boxes);
+  start(boxes, true);
+  collapse(boxes, tree);
+}
+
+void WideBvh::rebuild(std::span<const Aabb> boxes, const SpatialStructure& tree) {
+  start(boxes, false);
+  collapse(boxes, tree);
+}
+
+void WideBvh::collapse(std::span<const Aabb> boxes, const SpatialStructure& tree) {
   WideBvhBuilder(*this).collapse(tree, boxes);
   finish_build(boxes);
 }

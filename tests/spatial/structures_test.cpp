@@ -41,11 +41,11 @@ std::vector<Kind> kinds() {
   using enum Bvh::Build;
   for (const Bvh::Build build : {top_down, bottom_up, incremental, packed}) {
     using enum Bvh::Motion;
-    for (const Bvh::Motion motion : {refit, enlarge, reinsert}) {
+    for (const Bvh::Motion motion : {refit, enlarge, reinsert, rebuild}) {
       all.push_back({"BVH, build " + std::to_string(static_cast<int>(build)) + ", motion " +
                          std::to_string(static_cast<int>(motion)),
                      [=](int /*depth*/, std::uint32_t leaf_objects) {
-                       return std::make_unique<Bvh>(Bvh::Options{build, motion, leaf_objects});
+                       return std::make_unique<Bvh>(Bvh::Limits{build, motion, leaf_objects});
                      }});
     }
   }
