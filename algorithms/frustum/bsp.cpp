@@ -24,7 +24,7 @@ using frustum_culling::StructureCuller;
 CullerInfo describe() {
   constexpr auto build = ParameterSpec::Stage::build;
   CullerInfo info = frustum_culling::structure_culler_info(
-      "frustum.bsp",
+      "frustum.bsp", Repeatability::stateless,
       {ParameterSpec::choice("straddlers", "centre", {"node", "both", "centre"}, build,
                              "objects across a plane stay at its node and are looked at whenever "
                              "it is cut, go into both children and are met twice, or go where "

@@ -24,7 +24,7 @@ using frustum_culling::StructureCuller;
 CullerInfo describe() {
   constexpr auto build = ParameterSpec::Stage::build;
   CullerInfo info = frustum_culling::structure_culler_info(
-      "frustum.loose_octree",
+      "frustum.loose_octree", Repeatability::stateless,
       {ParameterSpec::real("overlap", 5.0, 0.0, 1e9, "m", build,
                            "by how much node boxes are enlarged on each side: 0 is strict and "
                            "leaves what straddles planes near the root, 5 is the report's value, "

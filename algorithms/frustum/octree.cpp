@@ -24,7 +24,7 @@ using frustum_culling::StructureCuller;
 
 CullerInfo describe() {
   CullerInfo info = frustum_culling::structure_culler_info(
-      "frustum.octree",
+      "frustum.octree", Repeatability::path,
       {ParameterSpec::integer(
            "depth", 6, 0, 16, "levels", ParameterSpec::Stage::build,
            "how often cells are halved at most; too small leaves many objects to "

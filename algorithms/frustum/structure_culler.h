@@ -85,7 +85,11 @@ class StructureCuller : public ICuller {
         tester_(read_switches(values)),
         objects_(read_object_test(values, false)),
         traversal_(read_node_policy(values)) {
-    info_.repeatability = tester_.switches().repeatability();
+    // How deep objects lie in the structure depends on where they were before.
+    const bool structure_shows =
+        read_node_policy(values) == NodePolicy::keep || followed_.structure().repeats_objects();
+    info_.repeatability =
+        structure_shows ? Repeatability::path : tester_.switches().repeatability();
   }
 
   const CullerInfo& info() const override { return info_; }
@@ -94,6 +98,7 @@ class StructureCuller : public ICuller {
     followed_.build(scene);
     objects_.build(scene);
     traversal_.build(scene.object_count(), followed_.structure().repeats_objects());
+    tester_.resize(scene.object_count() + followed_.structure().nodes().size());
   }
 
   void reset(std::uint64_t) override {
@@ -144,13 +149,16 @@ class StructureCuller : public ICuller {
 };
 
 /// The parts of the declaration that all of them have in common. `own`: the structure's parameters.
-inline CullerInfo structure_culler_info(std::string name, std::vector<ParameterSpec> own,
+/// Repeatability: path if the answers show the structure (objects that are repeated), which depends
+/// on where objects were before.
+inline CullerInfo structure_culler_info(std::string name, Repeatability repeatability,
+                                        std::vector<ParameterSpec> own,
                                         ParameterSpec intersecting) {
   CullerInfo info;
   info.name = std::move(name);
   info.family = "frustum";
   info.guarantee = Guarantee::conservative;
-  info.repeatability = Repeatability::stateless;
+  info.repeatability = repeatability;
   info.granularity = Granularity::object;
   info.culls = Culls::outside_frustum;
   info.space = Space::object;

@@ -30,7 +30,7 @@ using frustum_culling::PlaneMask;
 CullerInfo describe() {
   constexpr auto build = ParameterSpec::Stage::build;
   CullerInfo info = frustum_culling::structure_culler_info(
-      "frustum.two_step",
+      "frustum.two_step", Repeatability::path,
       {ParameterSpec::choice("nodes", "leaves", {"leaves", "inner"}, ParameterSpec::Stage::query,
                              "step 1 tests all leaves, or descends through the inner nodes"),
        ParameterSpec::integer(
@@ -58,9 +58,7 @@ class TwoStep : public ICuller {
         all_leaves_(values.choice("nodes") == "leaves"),
         followed_(limits),
         tester_(frustum_culling::read_switches(values)),
-        objects_(frustum_culling::read_object_test(values, true)) {
-    info_.repeatability = tester_.switches().repeatability();
-  }
+        objects_(frustum_culling::read_object_test(values, true)) {}
 
   const CullerInfo& info() const override { return info_; }
 
@@ -70,6 +68,7 @@ class TwoStep : public ICuller {
     objects_.build(scene);
     stamps_.resize(object_count_);
     kept_.reserve(object_count_);
+    tester_.resize(object_count_ + followed_.structure().nodes().size());
     list_leaves();
   }
 
