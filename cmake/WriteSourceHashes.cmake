@@ -1,5 +1,5 @@
 # Script: writes a C++ file with one hash for the sources of every culler family and one for the judge.
-#   cmake -D SOURCE_DIR=… -D FAMILIES=a,b -D TRUTH_FAMILIES=b -D OUTPUT=file -P WriteSourceHashes.cmake
+#   cmake -D SOURCE_DIR=… -D FAMILIES=a:folder_a,b:folder_b -D TRUTH_FAMILIES=b -D OUTPUT=file -P WriteSourceHashes.cmake
 # A family's answers depend on its own folder and on the layers below it, those of TRUTH_FAMILIES on the
 # judge too; the judge's on itself and the same layers. A mended family gets another hash, the others keep
 # theirs.
@@ -25,8 +25,10 @@ set(layers common/simd common/geometry common/scene common/spatial common/render
 string(REPLACE "," ";" families "${FAMILIES}")
 string(REPLACE "," ";" truth_families "${TRUTH_FAMILIES}")
 set(entries "")
-foreach(family IN LISTS families)
-  set(folders ${layers} algorithms/${family})
+foreach(entry IN LISTS families)
+  string(REGEX MATCH "^([^:]+):(.+)$" matched "${entry}")
+  set(family "${CMAKE_MATCH_1}")
+  set(folders ${layers} "algorithms/${CMAKE_MATCH_2}")
   if(family IN_LIST truth_families)
     list(APPEND folders common/judge)
   endif()

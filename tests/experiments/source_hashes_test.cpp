@@ -17,9 +17,9 @@ namespace fs = std::filesystem;
 class SourceHashes : public ::testing::Test {
  protected:
   SourceHashes() {
-    for (const char* file :
-         {"common/geometry/plane.h", "common/judge/metrics.cpp", "algorithms/frustum/flat.cpp",
-          "algorithms/backface/polygon.cpp", "algorithms/oracle/oracle.cpp"}) {
+    for (const char* file : {"common/geometry/plane.h", "common/judge/metrics.cpp",
+                             "algorithms/frustum/flat.cpp", "algorithms/backface/polygon.cpp",
+                             "algorithms/oracle/oracle.cpp", "algorithms/peers/bullet.cpp"}) {
       fs::create_directories((folder_.path() / file).parent_path());
       folder_.write(file, "int x;\n");
     }
@@ -30,7 +30,8 @@ class SourceHashes : public ::testing::Test {
     const fs::path output = folder_.path() / "hashes.cpp";
     const std::string command =
         std::string(VISLAB_CMAKE) + " -D SOURCE_DIR=" + folder_.path().string() +
-        " -D FAMILIES=frustum,backface,oracle -D TRUTH_FAMILIES=oracle -D OUTPUT=" +
+        " -D FAMILIES=frustum:frustum,backface:backface,oracle:oracle,peer:peers -D "
+        "TRUTH_FAMILIES=oracle -D OUTPUT=" +
         output.string() + " -P " VISLAB_SOURCE_DIR "/cmake/WriteSourceHashes.cmake";
     EXPECT_EQ(std::system(command.c_str()), 0);
     const std::string text = read_file(output);
@@ -40,7 +41,7 @@ class SourceHashes : public ::testing::Test {
       found[(*it)[1].matched ? (*it)[1].str() : "judge"] =
           (*it)[2].matched ? (*it)[2].str() : (*it)[3].str();
     }
-    EXPECT_EQ(found.size(), 4U);
+    EXPECT_EQ(found.size(), 5U);
     return found;
   }
 
@@ -54,6 +55,12 @@ TEST_F(SourceHashes, AMendedFamilyChangesAlone) {
   EXPECT_NE(after.at("frustum"), before.at("frustum"));
   EXPECT_EQ(after.at("backface"), before.at("backface"));
   EXPECT_EQ(after.at("judge"), before.at("judge"));
+}
+
+TEST_F(SourceHashes, AFamilyIsKnownByItsFolder) {
+  const auto before = hashes();
+  folder_.write("algorithms/peers/bullet.cpp", "int y;\n");
+  EXPECT_NE(hashes().at("peer"), before.at("peer"));
 }
 
 TEST_F(SourceHashes, ALowerLayerChangesEveryFamilyAndTheJudge) {
