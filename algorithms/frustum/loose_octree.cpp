@@ -34,7 +34,7 @@ CullerInfo describe() {
                               "how often cells are halved at most"),
        ParameterSpec::real("min_cell", 0.0, 0.0, 1e9, "m", build,
                            "cells are not halved into smaller ones"),
-       ParameterSpec::integer("leaf_size", 8, 0, 1'000'000, "objects", build,
+       ParameterSpec::integer("leaf_size", 64, 0, 1'000'000, "objects", build,
                               "a cell with so many objects is not halved; 0 puts each object into "
                               "the smallest cell that holds it, as in the report")},
       frustum_culling::node_policy_parameter());

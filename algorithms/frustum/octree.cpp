@@ -29,7 +29,7 @@ CullerInfo describe() {
            "depth", 6, 0, 16, "levels", ParameterSpec::Stage::build,
            "how often cells are halved at most; too small leaves many objects to "
            "test, too great makes many nodes and entries"),
-       ParameterSpec::integer("leaf_size", 8, 1, 1'000'000, "objects", ParameterSpec::Stage::build,
+       ParameterSpec::integer("leaf_size", 64, 1, 1'000'000, "objects", ParameterSpec::Stage::build,
                               "a leaf with so many objects is not halved")},
       frustum_culling::node_policy_parameter());
   info.summary =

@@ -37,7 +37,7 @@ CullerInfo describe() {
            "depth", 4, 0, 16, "levels", build,
            "how often cells are halved at most; too small leaves many objects to "
            "test, too great makes many leaves and entries"),
-       ParameterSpec::integer("leaf_size", 8, 1, 1'000'000, "objects", build,
+       ParameterSpec::integer("leaf_size", 64, 1, 1'000'000, "objects", build,
                               "a leaf with so many objects is not halved")},
       frustum_culling::object_intersecting_parameter());
   info.summary =

@@ -31,7 +31,7 @@ class AxisBsp final : public SpatialStructure {
     Straddlers straddlers = Straddlers::centre;
     Split split = Split::cost;
     int depth = 24;  // the root is at 0
-    std::uint32_t leaf_objects = 8;
+    std::uint32_t leaf_objects = 32;
   };
 
   explicit AxisBsp(const Limits& limits) : limits_(limits) {}

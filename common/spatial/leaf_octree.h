@@ -26,7 +26,7 @@ class LeafOctree final : public SpatialStructure {
   /// A leaf is not halved at `depth` (the root is at 0) or with up to `leaf_objects` objects.
   struct Limits {
     int depth = 6;
-    std::uint32_t leaf_objects = 8;
+    std::uint32_t leaf_objects = 64;
   };
 
   explicit LeafOctree(const Limits& limits) : limits_(limits) {}

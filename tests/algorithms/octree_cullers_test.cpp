@@ -10,6 +10,7 @@
 #include "common/spatial/bsp.h"
 #include "common/spatial/leaf_octree.h"
 #include "common/spatial/loose_octree.h"
+#include "experiments/contract/contract.h"
 #include "experiments/contract/small_scenes.h"
 #include "tests/algorithms/run_culler.h"
 #include "tests/geometry/adversarial_boxes.h"
@@ -218,10 +219,10 @@ TEST(StructureCullers, AgreeWithTheFlatCullerWhileObjectsMoveComeAndGo) {
   CullerRun flat("frustum.flat[kernel=scalar]", scene);
   for (const char* spec :
        {"frustum.loose_octree", "frustum.loose_octree[overlap=0,leaf_size=0,depth=6]",
-        "frustum.loose_octree[overlap=0.5,min_cell=3,masking=false]",
-        "frustum.loose_octree[plane_coherence=true,octant=true]", "frustum.bsp",
-        "frustum.bsp[straddlers=node,split=median]", "frustum.bsp[straddlers=node,split=cost]",
-        "frustum.bsp[split=midpoint,leaf_size=1]"}) {
+        "frustum.loose_octree[overlap=0.5,min_cell=3,leaf_size=2,masking=false]",
+        "frustum.loose_octree[plane_coherence=true,octant=true,leaf_size=4]", "frustum.bsp",
+        "frustum.bsp[straddlers=node,split=median,leaf_size=4]",
+        "frustum.bsp[straddlers=node,split=cost]", "frustum.bsp[split=midpoint,leaf_size=1]"}) {
     SCOPED_TRACE(spec);
     CullerRun run(spec, scene);
     for (int pass = 0; pass < 2; ++pass) {
@@ -252,10 +253,11 @@ TEST(StructureCullers, LoseNothingWhereObjectsAreRepeated) {
   CullerRun flat("frustum.flat[kernel=scalar]", scene);
   CullerRun exact("frustum.flat[test=exact]", scene);
   for (const char* spec :
-       {"frustum.octree", "frustum.octree[depth=3,leaf_size=1]", "frustum.octree[depth=12]",
-        "frustum.two_step", "frustum.two_step[nodes=inner,depth=6]",
+       {"frustum.octree", "frustum.octree[depth=3,leaf_size=1]",
+        "frustum.octree[depth=12,leaf_size=4]", "frustum.two_step",
+        "frustum.two_step[nodes=inner,depth=6,leaf_size=8]",
         "frustum.two_step[depth=6,leaf_size=1]", "frustum.two_step[plane_coherence=true]",
-        "frustum.bsp[straddlers=both]", "frustum.bsp[straddlers=both,split=median]"}) {
+        "frustum.bsp[straddlers=both]", "frustum.bsp[straddlers=both,split=median,leaf_size=4]"}) {
     SCOPED_TRACE(spec);
     CullerRun run(spec, scene);
     Random random(52);
@@ -273,10 +275,25 @@ TEST(StructureCullers, LoseNothingWhereObjectsAreRepeated) {
   }
 }
 
+TEST(StructureCullers, KeepTheirContractWithSmallLeaves) {
+  Registry registry;
+  register_all_cullers(registry);
+  for (const char* spec :
+       {"frustum.octree[leaf_size=2]", "frustum.two_step[leaf_size=2,nodes=inner]",
+        "frustum.loose_octree[leaf_size=0]", "frustum.loose_octree[leaf_size=2,overlap=0.5]",
+        "frustum.loose_octree[leaf_size=1,intersecting=keep]", "frustum.bsp[leaf_size=2]",
+        "frustum.bsp[leaf_size=2,straddlers=node,split=median]",
+        "frustum.bsp[leaf_size=2,straddlers=both,split=midpoint]"}) {
+    for (const ContractResult& result : check_contract(registry, spec)) {
+      EXPECT_TRUE(result.passed) << spec << ": " << result.check << ": " << result.message;
+    }
+  }
+}
+
 TEST(TwoStepCuller, FindsTheSameLeavesFromTheInnerNodes) {
   const Scene scene = random_field(61, 3000);
-  CullerRun leaves("frustum.two_step[depth=5]", scene);
-  CullerRun inner("frustum.two_step[depth=5,nodes=inner]", scene);
+  CullerRun leaves("frustum.two_step[depth=5,leaf_size=8]", scene);
+  CullerRun inner("frustum.two_step[depth=5,leaf_size=8,nodes=inner]", scene);
   Random random(62);
   for (int i = 0; i < 20; ++i) {
     const Camera camera = some_camera(random);
