@@ -1,4 +1,10 @@
 // Scene descriptions: small TOML files that say where a scene comes from (data/scenes).
+//
+// A scene is one of the tables `mesh` and `quake3`, a list of tables `objects`, or a table
+// `generator` with its `kind`. Keys are named as the members below and in generators.h; a mesh's
+// file has the keys `package` and `file`. Besides, fields know `edge_m` instead of half sizes,
+// objects `shape` = "ribbed_sphere" instead of a file, `up` = "y" | "z" and `heading_deg`, and
+// every scene without cells `offset`.
 #pragma once
 
 #include <cstdint>

@@ -40,7 +40,14 @@ LoadedScene load_scene(const std::string& name_or_file, const DataFolders& folde
 
 /// `name_or_file` is a path in data/paths, a .toml or .json file, or "" for a default path that is
 /// fitted to the scene (an orbit around a model; a walk between spawn points in a Quake world).
-/// `frames` > 0 resamples the path to that many frames. Throws InputError.
+/// `frames` > 0 resamples the path to that many frames, and what moves with it: the same movements
+/// in as much time, only seen less often. Throws InputError.
+///
+/// Keys of every description: `kind` and those of the way (tracks.h), `description`, `frames` (60),
+/// `relative` (points count from the middle of the scene's box in radii of its circumscribed
+/// sphere), those of the lens (lens_fit.h), `roll_deg` (about the view, the camera's up goes to its
+/// left), `eye_offset_m` (to the camera's right, as the eyes of a headset), and the table `motion`
+/// (motion_settings.h).
 Path load_path(const std::string& name_or_file, const Scene& scene, const Viewport& viewport,
                int frames, const DataFolders& folders);
 

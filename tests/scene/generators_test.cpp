@@ -144,6 +144,97 @@ TEST(AsteroidBelt, LiesAboveTheMiddleOfItsSceneBetweenBeacons) {
   for (ObjectId id = 0; id < 100; ++id) EXPECT_GT(scene.objects[id].transform[3].y, 100.0);
 }
 
+TEST(House, HasTheTrianglesThatAreAskedForAndIsSolid) {
+  for (std::uint32_t triangles = 8; triangles <= 2026; triangles += triangles < 200 ? 2 : 46) {
+    SCOPED_TRACE(triangles);
+    Scene scene;
+    scene.meshes.push_back(house_mesh(triangles, triangles));
+    scene.objects.push_back({0, glm::dmat4x3(1.0), none_id});
+    scene.finish();
+    const Mesh& mesh = scene.meshes[0];
+    EXPECT_EQ(mesh.triangles.size(), triangles);
+    EXPECT_EQ(mesh.positions.size(), triangles / 2 + 2);  // Euler: one surface, no hole
+    EXPECT_TRUE(mesh.solid);
+    EXPECT_EQ(scene.report.zero_area_triangles, 0U);
+    EXPECT_EQ(mesh.bounds.min.y, 0.0F);
+    EXPECT_LE(mesh.bounds.half_size().x, 8.5);
+    EXPECT_LE(mesh.bounds.half_size().z, 7.0);
+  }
+}
+
+TEST(Houses, StandApartAndHaveTrianglesOfTheirRange) {
+  HousesParameters parameters;
+  parameters.min_triangles = 118;
+  parameters.max_triangles = 2026;
+  Scene scene = make_houses(parameters);
+  scene.finish();
+  ASSERT_EQ(scene.object_count(), 100U);
+  std::set<std::size_t> counts;
+  for (ObjectId a = 0; a < 100; ++a) {
+    const std::size_t triangles = scene.mesh_of(a).triangles.size();
+    EXPECT_GE(triangles, 118U);
+    EXPECT_LE(triangles, 2026U);
+    counts.insert(triangles);
+    const Aabb box = transformed(scene.mesh_of(a).bounds, scene.objects[a].transform);
+    for (ObjectId b = 0; b < a; ++b) {
+      const Aabb other = transformed(scene.mesh_of(b).bounds, scene.objects[b].transform);
+      EXPECT_TRUE(box.max.x < other.min.x || box.min.x > other.max.x || box.max.z < other.min.z ||
+                  box.min.z > other.max.z);
+    }
+  }
+  EXPECT_GT(counts.size(), 70U);
+}
+
+TEST(RibbedSphere, HasThePumpkinsTrianglesAndVertices) {
+  Scene scene;
+  scene.meshes.push_back(ribbed_sphere_mesh(100, 50, 10));
+  scene.objects.push_back({0, glm::dmat4x3(1.0), none_id});
+  scene.finish();
+  EXPECT_EQ(scene.meshes[0].triangles.size(), 10'000U);
+  EXPECT_EQ(scene.meshes[0].positions.size(), 5'002U);
+  EXPECT_TRUE(scene.meshes[0].solid);
+}
+
+TEST(BoxMesh, IsDenserAtOneCornerByTheRatio) {
+  for (const double ratio : {1.0, 100.0}) {
+    const Mesh mesh = box_mesh({2.0, 1.0, 0.5}, 10, ratio);
+    EXPECT_EQ(mesh.triangles.size(), 6U * 10U * 10U * 2U);
+    EXPECT_EQ(mesh.positions.size(), mesh.triangles.size() / 2 + 2);
+    EXPECT_TRUE(is_closed_outward(mesh));
+    double smallest = 1e9;
+    double largest = 0.0;
+    for (const glm::uvec3& t : mesh.triangles) {
+      const glm::dvec3 a(mesh.positions[t.x]);
+      const glm::dvec3 normal =
+          glm::cross(glm::dvec3(mesh.positions[t.y]) - a, glm::dvec3(mesh.positions[t.z]) - a);
+      if (normal.z <= 0.0) continue;  // the face z = +0.5 alone
+      smallest = std::min(smallest, glm::length(normal));
+      largest = std::max(largest, glm::length(normal));
+    }
+    EXPECT_NEAR(largest / smallest, ratio, 1e-3 * ratio);
+  }
+}
+
+TEST(MeshField, ScalesItsInstancesByTheirLongestSide) {
+  BoxFieldParameters parameters;
+  parameters.count = 50;
+  parameters.extent_m = 60.0;
+  parameters.rotated = true;
+  Mesh slab = box_mesh({4.0, 1.0, 2.0}, 1, 1.0);
+  for (glm::vec3& p : slab.positions) p += glm::vec3(7.0F, 0.0F, 0.0F);
+  const Scene scene = make_mesh_field(slab, parameters);
+  ASSERT_EQ(scene.object_count(), 50U);
+  for (const Object& object : scene.objects) {
+    const double half = 4.0 * glm::length(object.transform[0]);
+    EXPECT_GE(half, 0.2 - 1e-9);
+    EXPECT_LE(half, 2.0 + 1e-9);
+    EXPECT_NEAR(glm::length(object.transform[1]), glm::length(object.transform[0]), 1e-12);
+    const glm::dvec3 middle = object.transform * glm::dvec4(7.0, 0.0, 0.0, 1.0);
+    for (int axis = 0; axis < 3; ++axis) EXPECT_LE(std::abs(middle[axis]), 60.0 + 1e-9);
+    EXPECT_GT(glm::length(middle), 5.0);
+  }
+}
+
 TEST(City, HasThePeersBuildings) {
   Scene scene = make_city(CityParameters());
   scene.finish();

@@ -151,5 +151,21 @@ TEST_F(OpenArena, IsWalkedWithinItsOpenLeaves) {
             path.content_hash());
 }
 
+TEST(MixedScene, HasTheModelsOfTheThesis) {
+  const Scene scene = load("mixed");
+  EXPECT_EQ(scene.object_count(), 8U);
+  EXPECT_EQ(scene.meshes.size(), 5U);
+  EXPECT_EQ(scene.triangle_count(), 47'794U + 5'804U + 4'184U + 10'000U + 4U * 4'968U);
+  for (ObjectId id = 0; id < 8; ++id) {
+    const Aabb box = transformed(scene.mesh_of(id).bounds, scene.objects[id].transform);
+    EXPECT_NEAR(box.min.y, 0.0, 0.25);  // rotated boxes are a little larger than what is in them
+    for (ObjectId other = 0; other < id; ++other) {
+      const Aabb next = transformed(scene.mesh_of(other).bounds, scene.objects[other].transform);
+      EXPECT_TRUE(box.max.x < next.min.x || box.min.x > next.max.x || box.max.z < next.min.z ||
+                  box.min.z > next.max.z);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace vislab

@@ -55,5 +55,16 @@ TEST(Settings, NamesTheLineOfMalformedText) {
   EXPECT_TRUE(says(input_error([]() { from("a = 1\nb = = 2\n"); }), "here.toml, line 2"));
 }
 
+TEST(Settings, GiveEachTableOfAListAndSayWhichIsWrong) {
+  const Settings settings = from("[[part]]\nsize = 1\n[[part]]\nsize = 2\nsiez = 3\n");
+  const std::vector<Settings> parts = settings.tables("part");
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_EQ(parts[1].whole("size", 0, 9), 2);
+  EXPECT_TRUE(says(input_error([&]() { parts[1].done(); }), "part 1: `siez` is not a key"));
+  EXPECT_TRUE(says(input_error([&]() { settings.tables("absent"); }), "`absent` is missing"));
+  EXPECT_TRUE(says(input_error([&]() { from("part = [1, 2]\n").tables("part"); }),
+                   "`part` is wrong; it must be a list of tables"));
+}
+
 }  // namespace
 }  // namespace vislab

@@ -1,9 +1,4 @@
 // Path descriptions: TOML files that name a kind of way and its parameters (data/paths).
-//
-// Keys of every path: `kind`, `description`, `frames` (60), `relative` (points are relative to the
-// scene), those of the lens (lens_fit.h), `roll_deg` (about the view, counter-clockwise as the
-// camera sees itself turn), `eye_offset_m` (to the camera's right: the eyes of a headset), and the
-// table `motion` (motion_settings.h).
 #include <algorithm>
 #include <numbers>
 #include <optional>
