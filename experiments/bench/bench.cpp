@@ -39,6 +39,17 @@ double units_per_second(const std::string& unit) {
   return 1.0;
 }
 
+Result measure(const BenchCase& bench_case, benchmark::State& state) {
+  Result result;
+  for ([[maybe_unused]] auto _ : state) {
+    const Measurement measurement = bench_case.measure();
+    result.value = measurement.value;
+    result.equal = measurement.equal;
+    state.SetIterationTime(1.0);
+  }
+  return result;
+}
+
 Result contest(const BenchCase& bench_case, benchmark::State& state) {
   const std::unique_ptr<Contest> sides = bench_case.make();
   const auto ours = [&] { sides->ours(); };
@@ -88,19 +99,24 @@ void print_json(const BenchCase& bench_case, const Result& result) {
   line["case"] = bench_case.name;
   line["value"] = result.value;
   line["unit"] = bench_case.unit;
-  line["against"] = bench_case.against;
-  line["ratio"] = result.ratio.value;
-  line["ratio_low"] = result.ratio.low;
-  line["ratio_high"] = result.ratio.high;
+  if (!bench_case.measure) {
+    line["against"] = bench_case.against;
+    line["ratio"] = result.ratio.value;
+    line["ratio_low"] = result.ratio.low;
+    line["ratio_high"] = result.ratio.high;
+  }
   line["equal"] = result.equal;
   std::printf("%s\n", line.dump().c_str());
 }
 
 void print_row(const BenchCase& bench_case, const Result& result) {
-  std::printf("%-12s %-14s %9.4g %-7s %6.3f [%.3f, %.3f] of the time of %s, %s\n",
-              bench_case.bench.c_str(), bench_case.name.c_str(), result.value,
-              bench_case.unit.c_str(), result.ratio.value, result.ratio.low, result.ratio.high,
-              bench_case.against.c_str(), result.equal ? "equal" : "NOT EQUAL");
+  std::printf("%-12s %-14s %9.4g %-7s ", bench_case.bench.c_str(), bench_case.name.c_str(),
+              result.value, bench_case.unit.c_str());
+  if (!bench_case.measure) {
+    std::printf("%6.3f [%.3f, %.3f] of the time of %s, ", result.ratio.value, result.ratio.low,
+                result.ratio.high, bench_case.against.c_str());
+  }
+  std::printf("%s\n", result.equal ? "equal" : "NOT EQUAL");
 }
 
 }  // namespace
@@ -122,7 +138,8 @@ int run_benchmarks(int argc, char** argv, const std::vector<BenchCase>& cases) {
   for (const BenchCase& bench_case : cases) {
     const auto run = [&](benchmark::State& state) {
       try {
-        const Result result = contest(bench_case, state);
+        const Result result =
+            bench_case.measure ? measure(bench_case, state) : contest(bench_case, state);
         (json ? print_json : print_row)(bench_case, result);
         std::fflush(stdout);
         if (!result.equal) code = std::max(code, 1);
@@ -135,7 +152,7 @@ int run_benchmarks(int argc, char** argv, const std::vector<BenchCase>& cases) {
     };
     benchmark::RegisterBenchmark((bench_case.bench + "/" + bench_case.name).c_str(), run)
         ->UseManualTime()
-        ->Iterations(rounds);
+        ->Iterations(bench_case.measure ? 1 : rounds);
   }
   SilentReporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);

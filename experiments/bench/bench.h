@@ -29,18 +29,27 @@ class Contest {
   virtual double work() const { return 0.0; }
 };
 
+/// A figure that is no comparison: a rate of growth, say.
+struct Measurement {
+  double value = 0.0;
+  bool equal = false;  // were the results on the way what they had to be?
+};
+
 struct BenchCase {
   std::string bench;    // what is measured: a culler's name, or "truth"
   std::string name;     // the case
   std::string unit;     // of our value
-  std::string against;  // the other's name
+  std::string against;  // the other's name; none if it is a measurement
   /// Sets the case up when its turn comes; it is thrown away before the next.
   std::function<std::unique_ptr<Contest>()> make;
+  /// Instead of a contest: takes the figure, once.
+  std::function<Measurement()> measure = {};
 };
 
 /// Runs all cases that the flags select and prints a table, or with `--json` one object a line:
-/// bench, case, value, unit, against, ratio, ratio_low, ratio_high, equal. Returns the exit code:
-/// 0; 1 if results differed; 2 for unknown flags or wrong input.
+/// bench, case, value, unit, against, ratio, ratio_low, ratio_high, equal; measurements are without
+/// against and the ratios. Returns the exit code: 0; 1 if results differed; 2 for unknown flags or
+/// wrong input.
 int run_benchmarks(int argc, char** argv, const std::vector<BenchCase>& cases);
 
 }  // namespace vislab
