@@ -125,7 +125,7 @@ std::vector<std::pair<std::string, Points>> degenerate_sets() {
 
 TEST(BoundingVolumes, EncloseTheirPointsInExactArithmetic) {
   Random random(62);
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < 100; ++i) {
     for (const Kind& kind : kinds()) {
       const double size = std::pow(10.0, random.uniform(-6.0, 6.0));
       const glm::dvec3 offset = random_vector(random, random.below(2) == 0 ? 0.0 : 1e3 * size);
@@ -180,7 +180,7 @@ TEST(OrientedBox, OfPlanarAndCollinearPointsIsFlat) {
 
 TEST(OrientedBox, FindsTheAxesOfATurnedBox) {
   Random random(63);
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < 20; ++i) {
     const glm::dmat3 turn = random_turn(random);
     const glm::dvec3 half(3.0, 2.0, 1.0);
     Points points;
@@ -344,7 +344,7 @@ TEST(CovarianceBox, IsNotMuchLargerThanTheSmallest) {
   Random random(69);
   for (const Kind& kind : kinds()) {
     Ratios ratios;
-    for (int i = 0; i < 20; ++i) {
+    for (int i = 0; i < 8; ++i) {
       const Points points = points_of(random, kind, 200, 10.0, random_vector(random, 100.0));
       const double smallest = smallest_box(points).volume();
       ratios.add(covariance_box(points).volume() / smallest);
@@ -372,13 +372,15 @@ TEST(BoundingVolumes, OfRealMeshesAreNearTheSmallest) {
     }
     const Sphere sphere = ritter_sphere(points);
     const OrientedBox box = covariance_box(points);
-    EXPECT_TRUE(contains_all(sphere, points)) << name;
-    EXPECT_TRUE(contains_all(box, points)) << name;
+    for (const glm::dvec3& corner : convex_hull(points).points) {  // and with them all points
+      ASSERT_TRUE(exactly_contains(sphere, corner)) << name;
+      ASSERT_TRUE(exactly_contains(box, corner)) << name;
+    }
     const double sphere_ratio = sphere.radius / smallest_sphere_radius(points);
-    const double box_ratio = box.volume() / smallest_box(points).volume();
+    const double smallest = smallest_box(points).volume();
+    const double box_ratio = box.volume() / smallest;
     std::cout << name << ": Ritter " << sphere_ratio << ", covariance box " << box_ratio
-              << ", box along the axes "
-              << oriented(bounds_of(points)).volume() / smallest_box(points).volume() << "\n";
+              << ", box along the axes " << oriented(bounds_of(points)).volume() / smallest << "\n";
     spheres.add(sphere_ratio);
     boxes.add(box_ratio);
     EXPECT_LE(sphere_ratio, 1.2) << name;
