@@ -69,13 +69,26 @@ struct FrustumTester::Corners {
   explicit Corners(const Aabb& box)
       : at{box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z} {}
 
-  /// Bound on the sum of the absolute coordinates of every point of the box.
-  double reach() const {
-    return std::max(std::abs(at[0]), std::abs(at[3])) + std::max(std::abs(at[1]), std::abs(at[4])) +
-           std::max(std::abs(at[2]), std::abs(at[5]));
+  double to_p_vertex(const TestPlane& plane) const { return distance(plane, plane.p); }
+  double to_n_vertex(const TestPlane& plane) const { return distance(plane, plane.n); }
+  glm::dvec3 middle() const {
+    return {0.5 * (at[0] + at[3]), 0.5 * (at[1] + at[4]), 0.5 * (at[2] + at[5])};
+  }
+  /// Share of the margin that depends on the box: on the sum of the absolute coordinates that a
+  /// point of the box has at most.
+  double error() const {
+    return clear_share * (std::max(std::abs(at[0]), std::abs(at[3])) +
+                          std::max(std::abs(at[1]), std::abs(at[4])) +
+                          std::max(std::abs(at[2]), std::abs(at[5])));
   }
 
   std::array<double, 6> at;
+
+ private:
+  double distance(const TestPlane& plane, const std::array<std::uint8_t, 3>& vertex) const {
+    return plane.normal.x * at[vertex[0]] + plane.normal.y * at[vertex[1]] +
+           plane.normal.z * at[vertex[2]] + plane.d;
+  }
 };
 
 /// What the octant test says of a box.
@@ -104,13 +117,14 @@ void FrustumTester::start(const Frame& frame) {
   frustum_ = frustum_of(camera);
   all_planes_ = static_cast<PlaneMask>((1U << static_cast<unsigned>(frustum_.plane_count)) - 1U);
   const auto prepared = [](const Plane& plane) {
-    TestPlane test{
-        plane.normal, plane.d, clear_share * std::max(std::abs(plane.d), plane.magnitude), {}, {}};
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto i = static_cast<std::uint8_t>(axis);
+    TestPlane test;
+    test.normal = plane.normal;
+    test.d = plane.d;
+    test.error = clear_share * std::max(std::abs(plane.d), plane.magnitude);
+    for (std::uint8_t axis = 0; axis < 3; ++axis) {
       const bool rises = plane.normal[axis] >= 0.0;
-      test.p[i] = static_cast<std::uint8_t>(rises ? i + 3 : i);
-      test.n[i] = static_cast<std::uint8_t>(rises ? i : i + 3);
+      test.p[axis] = static_cast<std::uint8_t>(rises ? axis + 3 : axis);
+      test.n[axis] = static_cast<std::uint8_t>(rises ? axis : axis + 3);
     }
     return test;
   };
@@ -131,41 +145,18 @@ void FrustumTester::start(const Frame& frame) {
   if (switches_.motion_coherence) motion_.start(camera, frustum_);
 }
 
-inline double FrustumTester::distance(const TestPlane& plane, const Corners& corners,
-                                      bool p_vertex) {
-  const auto& [x, y, z] = p_vertex ? plane.p : plane.n;
-  return plane.normal.x * corners.at[x] + plane.normal.y * corners.at[y] +
-         plane.normal.z * corners.at[z] + plane.d;
-}
-
-inline bool FrustumTester::excludes_node(std::size_t plane, const Corners& corners,
-                                         double& distance_m) const {
-  distance_m = distance(planes_[plane], corners, true);
-  return distance_m < 0.0 && distance_m < -(clear_share * corners.reach() + planes_[plane].error);
-}
-
-inline bool FrustumTester::excludes_object(std::size_t plane, const Aabb& box,
-                                           const Corners& corners, double& distance_m) const {
-  distance_m = distance(planes_[plane], corners, true);
-  return distance_m < 0.0 && surely_outside(frustum_.planes[plane], box);
-}
-
 Side FrustumTester::side(const Aabb& box, std::uint32_t slot, PlaneMask& mask) {
   if (!switches_.masking) mask = all_planes_;
   if (!box.valid()) return Side::intersecting;
   if (!switches_.plain()) return side_switched(box, slot, mask);
   const Corners corners(box);
-  double reach_error = -1.0;
+  const double error = corners.error();
   for (PlaneMask rest = mask; rest != 0; rest &= rest - 1U) {
     const auto i = static_cast<std::size_t>(std::countr_zero(rest));
     ++plane_tests_;
-    double to_p = 0.0;
-    if (excludes_node(i, corners, to_p)) return Side::outside;
-    const double to_n = distance(planes_[i], corners, false);
-    if (to_n > 0.0) {
-      if (reach_error < 0.0) reach_error = clear_share * corners.reach();
-      if (to_n > reach_error + planes_[i].error) mask &= static_cast<PlaneMask>(~bit(i));
-    }
+    const double limit = error + planes_[i].error;
+    if (corners.to_p_vertex(planes_[i]) < -limit) return Side::outside;
+    if (corners.to_n_vertex(planes_[i]) > limit) mask &= static_cast<PlaneMask>(~bit(i));
   }
   return mask == 0 ? Side::inside : Side::intersecting;
 }
@@ -173,13 +164,10 @@ Side FrustumTester::side(const Aabb& box, std::uint32_t slot, PlaneMask& mask) {
 bool FrustumTester::outside(const Aabb& box, std::uint32_t slot, PlaneMask mask) {
   if (!switches_.masking) mask = all_planes_;
   if (!switches_.plain()) return outside_switched(box, slot, mask);
-  const Corners corners(box);
   for (PlaneMask rest = mask; rest != 0; rest &= rest - 1U) {
     ++plane_tests_;
-    double to_p = 0.0;
-    if (excludes_object(static_cast<std::size_t>(std::countr_zero(rest)), box, corners, to_p)) {
-      return true;
-    }
+    const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+    if (surely_outside(frustum_.planes[i], box)) return true;
   }
   return false;
 }
@@ -205,62 +193,64 @@ bool FrustumTester::decided_early(const Aabb& box, std::uint32_t slot) {
 FrustumTester::Octant FrustumTester::octant_of(const Corners& corners, PlaneMask mask,
                                                PlaneMask rest) {
   Octant octant;
-  const glm::dvec3 middle(0.5 * (corners.at[0] + corners.at[3]),
-                          0.5 * (corners.at[1] + corners.at[4]),
-                          0.5 * (corners.at[2] + corners.at[5]));
-  const double reach_error = clear_share * corners.reach();
+  const glm::dvec3 middle = corners.middle();
+  const double error = corners.error();
+  const auto distance = [&](const TestPlane& plane) {
+    ++octant_tests_;
+    return glm::dot(plane.normal, middle) + plane.d;
+  };
   if ((mask & bit(Frustum::near)) != 0) {
     const TestPlane& near = planes_[Frustum::near];
-    ++octant_tests_;
-    const double to_near = glm::dot(near.normal, middle) + near.d;
-    if (!(to_near + eye_to_near_m_ > reach_error + near.error)) return octant;  // behind the eye
+    if (!(distance(near) + eye_to_near_m_ > error + near.error)) return octant;  // behind the eye
   }
   for (std::size_t pair = 0; pair < 3; ++pair) {
     if ((rest & pair_bits(pair)) != pair_bits(pair)) continue;
-    ++octant_tests_;
-    const TestPlane& plane = middles_[pair];
-    const double difference = glm::dot(plane.normal, middle) + plane.d;
-    if (!(std::abs(difference) > 4.0 * reach_error + plane.error)) continue;
+    const double difference = distance(middles_[pair]);
+    if (!(std::abs(difference) > 4.0 * error + middles_[pair].error)) continue;
     octant.skipped |= bit(2 * pair + (difference > 0.0 ? 1 : 0));
     octant.farther[pair] = std::abs(difference);
   }
   return octant;
 }
 
-void FrustumTester::remember(std::uint32_t slot, std::size_t plane, double distance_m,
-                             const Aabb& box) {
+void FrustumTester::remember(std::uint32_t slot, std::size_t plane, const Aabb& box) {
   if (switches_.plane_coherence) last_plane_[slot] = static_cast<std::uint8_t>(plane);
   if (switches_.motion_coherence) {
-    motion_.remember(slot, static_cast<int>(plane), distance_m, box);
+    const Plane& p = frustum_.planes[plane];
+    motion_.remember(slot, static_cast<int>(plane), p.signed_distance(p_vertex(p, box)), box);
   }
+}
+
+template <typename Excluded>
+bool FrustumTester::last_plane_excludes(std::uint32_t slot, PlaneMask& rest, Excluded&& excluded) {
+  if (!switches_.plane_coherence || last_plane_[slot] == no_plane) return false;
+  const std::size_t last = last_plane_[slot];
+  if ((rest & bit(last)) == 0) return false;
+  rest &= static_cast<PlaneMask>(~bit(last));
+  return excluded(last);
 }
 
 Side FrustumTester::side_switched(const Aabb& box, std::uint32_t slot, PlaneMask& mask) {
   if (decided_early(box, slot)) return Side::outside;
   const Corners corners(box);
-  const double reach_error = clear_share * corners.reach();
-  std::array<double, 6> to_middle{};  // of the planes that are tested: distance of the box's middle
+  const double error = corners.error();
+  std::array<double, 6> to_middle{};  // of the planes that are tested
   const auto excluded = [&](std::size_t i) {
     ++plane_tests_;
-    double to_p = 0.0;
-    if (excludes_node(i, corners, to_p)) {
-      remember(slot, i, to_p, box);
+    const double limit = error + planes_[i].error;
+    const double to_p = corners.to_p_vertex(planes_[i]);
+    if (to_p < -limit) {
+      remember(slot, i, box);
       return true;
     }
-    const double to_n = distance(planes_[i], corners, false);
-    if (to_n > reach_error + planes_[i].error) mask &= static_cast<PlaneMask>(~bit(i));
+    const double to_n = corners.to_n_vertex(planes_[i]);
+    if (to_n > limit) mask &= static_cast<PlaneMask>(~bit(i));
     to_middle[i] = 0.5 * (to_p + to_n);
     return false;
   };
 
   PlaneMask rest = mask;
-  if (switches_.plane_coherence && last_plane_[slot] != no_plane) {
-    const std::size_t last = last_plane_[slot];
-    if ((rest & bit(last)) != 0) {
-      if (excluded(last)) return Side::outside;
-      rest &= static_cast<PlaneMask>(~bit(last));
-    }
-  }
+  if (last_plane_excludes(slot, rest, excluded)) return Side::outside;
   const Octant octant = switches_.octant ? octant_of(corners, mask, rest) : Octant{};
   rest &= static_cast<PlaneMask>(~octant.skipped);
   for (; rest != 0; rest &= rest - 1U) {
@@ -271,7 +261,7 @@ Side FrustumTester::side_switched(const Aabb& box, std::uint32_t slot, PlaneMask
     for (PlaneMask skipped = octant.skipped; skipped != 0; skipped &= skipped - 1U) {
       const auto i = static_cast<std::size_t>(std::countr_zero(skipped));
       const double to_skipped = to_middle[i ^ 1U] + octant.farther[i / 2];
-      if (to_skipped > radius + 8.0 * (reach_error + planes_[i].error + planes_[i ^ 1U].error)) {
+      if (to_skipped > radius + 8.0 * (error + planes_[i].error + planes_[i ^ 1U].error)) {
         mask &= static_cast<PlaneMask>(~bit(i));
       }
     }
@@ -281,23 +271,16 @@ Side FrustumTester::side_switched(const Aabb& box, std::uint32_t slot, PlaneMask
 
 bool FrustumTester::outside_switched(const Aabb& box, std::uint32_t slot, PlaneMask mask) {
   if (decided_early(box, slot)) return true;
-  const Corners corners(box);
   const auto excluded = [&](std::size_t i) {
     ++plane_tests_;
-    double to_p = 0.0;
-    if (!excludes_object(i, box, corners, to_p)) return false;
-    remember(slot, i, to_p, box);
+    if (!surely_outside(frustum_.planes[i], box)) return false;
+    remember(slot, i, box);
     return true;
   };
   PlaneMask rest = mask;
-  if (switches_.plane_coherence && last_plane_[slot] != no_plane) {
-    const std::size_t last = last_plane_[slot];
-    if ((rest & bit(last)) != 0) {
-      if (excluded(last)) return true;
-      rest &= static_cast<PlaneMask>(~bit(last));
-    }
-  }
-  if (switches_.octant) rest &= static_cast<PlaneMask>(~octant_of(corners, mask, rest).skipped);
+  if (last_plane_excludes(slot, rest, excluded)) return true;
+  if (switches_.octant)
+    rest &= static_cast<PlaneMask>(~octant_of(Corners(box), mask, rest).skipped);
   for (; rest != 0; rest &= rest - 1U) {
     if (excluded(static_cast<std::size_t>(std::countr_zero(rest)))) return true;
   }

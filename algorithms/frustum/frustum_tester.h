@@ -94,21 +94,19 @@ class FrustumTester {
  private:
   /// A plane of this frame with the choice of the n- and p-vertex made.
   struct TestPlane {
-    glm::dvec3 normal;
-    double d;
-    double error;                      // share of the margin that does not depend on the box
-    std::array<std::uint8_t, 3> p, n;  // where the vertices' coordinates stand in Corners
+    glm::dvec3 normal{0.0};
+    double d = 0.0;
+    double error = 0.0;                    // share of the margin that does not depend on the box
+    std::array<std::uint8_t, 3> p{}, n{};  // where the vertices' coordinates stand in Corners
   };
   struct Corners;
   struct Octant;
 
-  static double distance(const TestPlane& plane, const Corners& corners, bool p_vertex);
-  bool excludes_node(std::size_t plane, const Corners& corners, double& distance) const;
-  bool excludes_object(std::size_t plane, const Aabb& box, const Corners& corners,
-                       double& distance) const;
   bool decided_early(const Aabb& box, std::uint32_t slot);
   Octant octant_of(const Corners& corners, PlaneMask mask, PlaneMask rest);
-  void remember(std::uint32_t slot, std::size_t plane, double distance, const Aabb& box);
+  void remember(std::uint32_t slot, std::size_t plane, const Aabb& box);
+  template <typename Excluded>
+  bool last_plane_excludes(std::uint32_t slot, PlaneMask& rest, Excluded&& excluded);
   Side side_switched(const Aabb& box, std::uint32_t slot, PlaneMask& mask);
   bool outside_switched(const Aabb& box, std::uint32_t slot, PlaneMask mask);
 

@@ -2,8 +2,10 @@
 // check have to find them out. Test-only: they are not in the lab's registry.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 
+#include "algorithms/all_cullers.h"
 #include "common/culler/registry.h"
 #include "common/geometry/frustum.h"
 
@@ -22,16 +24,10 @@ inline CullerInfo claimed_conservative(const std::string& variant, Granularity g
   return info;
 }
 
-/// A frustum test on boxes that gets something wrong.
-class WrongFrustum : public ICuller {
+/// A frustum test on boxes in which the sign of the left plane is wrong.
+class FlippedLeftPlane : public ICuller {
  public:
-  enum class Mistake {
-    left_plane_flipped,  // the sign of one plane is wrong
-    all_corners_inside,  // an object is kept only if all its corners are inside
-    any_corner_inside    // an object is kept only if one of its corners is inside
-  };
-
-  WrongFrustum(CullerInfo info, Mistake mistake) : info_(std::move(info)), mistake_(mistake) {}
+  explicit FlippedLeftPlane(CullerInfo info) : info_(std::move(info)) {}
 
   const CullerInfo& info() const override { return info_; }
   void build(const Scene& scene, const BuildContext&) override {
@@ -40,42 +36,45 @@ class WrongFrustum : public ICuller {
 
   void cull(const Frame& frame, const Candidates& candidates, DrawSink& out) override {
     Frustum frustum = frustum_of(frame.camera);
-    if (mistake_ == Mistake::left_plane_flipped) {
-      Plane& left = frustum.planes[Frustum::left];
-      left = {-left.normal, -left.d, left.magnitude};
-    }
+    Plane& left = frustum.planes[Frustum::left];
+    left = {-left.normal, -left.d, left.magnitude};
     kept_.clear();
     for_each_object_run(candidates, frame, [&](std::span<const ObjectId> run) {
       for (const ObjectId object : run) {
-        if (keeps(frustum, frame.objects.bounds[object])) kept_.push_back(object);
+        const Aabb& box = frame.objects.bounds[object];
+        if (std::ranges::none_of(frustum.span(),
+                                 [&](const Plane& plane) { return surely_outside(plane, box); })) {
+          kept_.push_back(object);
+        }
       }
     });
     out.objects(kept_);
   }
 
  private:
-  bool keeps(const Frustum& frustum, const Aabb& box) const {
-    if (mistake_ == Mistake::left_plane_flipped) {
-      for (const Plane& plane : frustum.span()) {
-        if (surely_outside(plane, box)) return false;
-      }
-      return true;
-    }
-    int corners_inside = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-      const glm::dvec3 p((corner & 1) != 0 ? box.max.x : box.min.x,
-                         (corner & 2) != 0 ? box.max.y : box.min.y,
-                         (corner & 4) != 0 ? box.max.z : box.min.z);
-      bool inside = true;
-      for (const Plane& plane : frustum.span()) inside &= plane.signed_distance(p) >= 0.0;
-      corners_inside += inside ? 1 : 0;
-    }
-    return mistake_ == Mistake::all_corners_inside ? corners_inside == 8 : corners_inside > 0;
+  CullerInfo info_;
+  std::vector<ObjectId> kept_;
+};
+
+/// A culler of the lab under a declaration that claims more than it holds.
+class Claimed : public ICuller {
+ public:
+  Claimed(CullerInfo info, const CullerEntry& entry, const std::string& error)
+      : info_(std::move(info)),
+        inner_(entry.make(
+            ParameterValues(entry.info.name, entry.info.parameters, {{"error", error}}))) {}
+
+  const CullerInfo& info() const override { return info_; }
+  void build(const Scene& scene, const BuildContext& context) override {
+    inner_->build(scene, context);
+  }
+  void cull(const Frame& frame, const Candidates& candidates, DrawSink& out) override {
+    inner_->cull(frame, candidates, out);
   }
 
+ private:
   CullerInfo info_;
-  Mistake mistake_;
-  std::vector<ObjectId> kept_;
+  std::unique_ptr<ICuller> inner_;
 };
 
 /// A back-face test whose normals point the wrong way: keeps the backs of closed meshes.
@@ -106,21 +105,27 @@ class FlippedBackface : public ICuller {
 /// Adds wrong.left_plane_flipped, wrong.all_corners_inside, wrong.any_corner_inside,
 /// wrong.normals_flipped, and wrong.image, which has a plane flipped and claims to be image_exact.
 inline void add_wrong_variants(Registry& registry) {
-  using Mistake = WrongFrustum::Mistake;
-  const auto add_frustum = [&](const CullerInfo& info, Mistake mistake) {
-    registry.add({info, [info, mistake](const ParameterValues&) {
-                    return std::make_unique<WrongFrustum>(info, mistake);
-                  }});
-  };
   const auto claimed = [](const std::string& variant) {
     return claimed_conservative(variant, Granularity::object);
   };
-  add_frustum(claimed("left_plane_flipped"), Mistake::left_plane_flipped);
-  add_frustum(claimed("all_corners_inside"), Mistake::all_corners_inside);
-  add_frustum(claimed("any_corner_inside"), Mistake::any_corner_inside);
+  const auto add_flipped = [&](const CullerInfo& info) {
+    registry.add({info, [info](const ParameterValues&) {
+                    return std::make_unique<FlippedLeftPlane>(info);
+                  }});
+  };
+  add_flipped(claimed("left_plane_flipped"));
   CullerInfo image = claimed("image");
   image.guarantee = Guarantee::image_exact;
-  add_frustum(image, Mistake::left_plane_flipped);
+  add_flipped(image);
+  Registry all;
+  register_all_cullers(all);
+  const CullerEntry wrong = all.entry("frustum.wrong");
+  for (const std::string error : {"all_corners_inside", "any_corner_inside"}) {
+    const CullerInfo info = claimed(error);
+    registry.add({info, [info, wrong, error](const ParameterValues&) {
+                    return std::make_unique<Claimed>(info, wrong, error);
+                  }});
+  }
   registry.add({claimed_conservative("normals_flipped", Granularity::triangle),
                 [](const ParameterValues&) { return std::make_unique<FlippedBackface>(); }});
 }
