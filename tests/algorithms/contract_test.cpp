@@ -38,6 +38,14 @@ std::vector<std::string> specs_under_contract() {
        "frustum.flat > occlusion.stop_and_wait > backface.polygon",
        "backface.polygon > occlusion.stop_and_wait", "oracle > backface.polygon",
        "frustum.flat[test=sphere] > frustum.flat > oracle[level=triangle]"});
+  // The switches of the frustum test that are no choices, together and on everything that has them.
+  for (const auto& [name, entry] : registry.entries()) {
+    if (std::ranges::find(entry.info.parameters, "octant", &ParameterSpec::name) !=
+        entry.info.parameters.end()) {
+      specs.push_back(name + "[octant=true,plane_coherence=true]");
+      specs.push_back(name + "[motion_coherence=true,meta=sphere]");
+    }
+  }
   return specs;
 }
 
