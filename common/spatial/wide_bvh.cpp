@@ -16,7 +16,7 @@ constexpr std::uint32_t width = BoxBlock::width;
 /// every plane.
 constexpr float nothing = std::numeric_limits<float>::max();
 /// Shorter runs are copied: handing over a span costs a call.
-constexpr std::uint32_t shortest_run = 64;
+constexpr std::uint32_t shortest_run = 8;
 
 bool test_bit(const std::vector<std::uint64_t>& bits, std::uint32_t index) {
   return (bits[index >> 6U] >> (index & 63U) & 1U) != 0;
@@ -244,13 +244,15 @@ void WideBvh::reserve(WideSelection& out) const {
   // Long runs have that many objects, or, while there are absent ones, end at a node's border.
   out.runs.reserve(objects / shortest_run + 1);
   out.places.reserve(nodes_.size() * width);
-  out.pending.reserve(nodes_.size() + width);
+  out.pending.reserve(nodes_.size());
+  out.pending_leaves.reserve(leaves_.size());
   out.undecided.reserve(objects);
 }
 
 std::size_t WideSelection::bytes() const {
   const auto size = [](const auto& values) { return values.capacity() * sizeof(values[0]); };
-  return size(runs) + size(pending) + size(places) + size(undecided) + size(loose);
+  return size(runs) + size(pending) + size(pending_leaves) + size(places) + size(undecided) +
+         size(loose);
 }
 
 std::size_t WideBvh::bytes() const {

@@ -24,6 +24,7 @@
 
 #include "common/geometry/frustum.h"
 #include "common/scene/scene.h"
+#include "common/spatial/huge_pages.h"
 #include "common/spatial/morton.h"
 #include "common/spatial/spatial_structure.h"
 
@@ -62,13 +63,19 @@ struct WideSelection {
     std::uint32_t node;
     std::uint32_t planes;  // bit by plane that is to be asked
   };
+  struct PendingLeaf {
+    std::uint32_t leaf;
+    std::uint32_t first, count;  // places of its objects
+    std::uint32_t planes;
+  };
   struct Places {
     std::uint32_t begin, end;
   };
-  std::vector<Pending> pending;     // nodes that are still to be visited
-  std::vector<Places> places;       // long runs, before absent objects are taken out
-  std::vector<ObjectId> undecided;  // objects that float could not decide
-  std::vector<ObjectId> loose;      // what is in no long run: its first loose_count
+  std::vector<Pending> pending;             // nodes that are visited
+  std::vector<PendingLeaf> pending_leaves;  // leaves that are
+  std::vector<Places> places;               // long runs, before absent objects are taken out
+  std::vector<ObjectId> undecided;          // objects that float could not decide
+  std::vector<ObjectId> loose;              // what is in no long run: its first loose_count
   std::size_t loose_count = 0;
 
   std::size_t bytes() const;
@@ -144,12 +151,13 @@ class WideBvh {
   glm::vec3 origin_{0.0F};
   float limit_ = 0.0F;  // no coordinate in the tree is farther from the origin
 
-  std::vector<WideNode> nodes_;             // the root first, children after their parents
-  std::vector<BoxBlock> leaves_;            // in the order of the objects
-  std::vector<ObjectId> objects_;           // place to object
-  std::vector<std::uint32_t> first_place_;  // by leaf
-  std::vector<std::uint32_t> node_parent_;  // by node: parent * 8 + lane
-  std::vector<std::uint32_t> leaf_parent_;  // by leaf: parent * 8 + lane
+  std::vector<WideNode, HugePageAllocator<WideNode>>
+      nodes_;  // the root first, children after their parents
+  std::vector<BoxBlock, HugePageAllocator<BoxBlock>> leaves_;   // in the order of the objects
+  std::vector<ObjectId, HugePageAllocator<ObjectId>> objects_;  // place to object
+  std::vector<std::uint32_t> first_place_;                      // by leaf
+  std::vector<std::uint32_t> node_parent_;                      // by node: parent * 8 + lane
+  std::vector<std::uint32_t> leaf_parent_;                      // by leaf: parent * 8 + lane
   std::vector<std::uint32_t> slot_;         // by object: leaf * 8 + lane, or nowhere
   std::vector<std::uint8_t> state_;         // by object
   std::vector<std::uint64_t> absent_bits_;  // by place: is its object to be skipped?

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -40,30 +41,29 @@ glm::vec3 middle_of(std::span<const Aabb> boxes) {
 /// One object in 64 may be left out, if that shortens the reach to less than a 64th: float's margin
 /// grows with the reach.
 float reach_of(std::span<const Aabb> boxes, const glm::vec3& origin) {
-  // Counts by the binary exponent of the farthest coordinate.
-  constexpr int lowest = std::numeric_limits<float>::min_exponent;
-  constexpr int highest = std::numeric_limits<float>::max_exponent;
-  std::array<std::size_t, highest - lowest + 1> counts{};
-  std::size_t total = 0;
+  // Counts by the biased exponent of the farthest coordinate: e is for less than 2^(e - 126), the
+  // last for what is not finite.
+  constexpr std::size_t not_finite = 255;
+  std::array<std::size_t, not_finite + 1> counts{};
   for (const Aabb& box : boxes) {
     const glm::vec3 far = glm::max(glm::abs(box.min - origin), glm::abs(box.max - origin));
+    const bool ordered = glm::all(glm::lessThanEqual(box.min, box.max));
     const float reach = std::max({far.x, far.y, far.z});
-    if (!box.valid() || !std::isfinite(reach)) continue;
-    ++counts[static_cast<std::size_t>(
-        std::max(reach > 0.0F ? std::ilogb(reach) + 1 : lowest, lowest) - lowest)];
-    ++total;
+    ++counts[ordered ? std::bit_cast<std::uint32_t>(reach) >> 23U : not_finite];
   }
-  int exponent = highest;
-  while (exponent > lowest && counts[static_cast<std::size_t>(exponent - lowest)] == 0) --exponent;
+  const std::size_t total = boxes.size() - counts[not_finite];
+  std::size_t exponent = not_finite - 1;
+  while (exponent > 0 && counts[exponent] == 0) --exponent;
   std::size_t beyond = 0;
-  int shorter = exponent;
-  while (shorter > lowest) {
-    beyond += counts[static_cast<std::size_t>(shorter - lowest)];
+  std::size_t shorter = exponent;
+  while (shorter > 0) {
+    beyond += counts[shorter];
     if (beyond > total / 64) break;
     --shorter;
   }
   if (shorter + 6 < exponent) exponent = shorter;
-  return std::ldexp(1.0F, std::min(exponent + 2, highest - 2));
+  // Twice the reach is still finite.
+  return std::ldexp(1.0F, std::min(static_cast<int>(exponent) - 126 + 2, 126));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #define HWY_TARGET_INCLUDE "common/spatial/wide_bvh_kernel.cpp"
 #include <hwy/foreach_target.h>
 // foreach_target.h must come before highway.h.
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <bit>
@@ -37,6 +38,7 @@ PlaneReader reader_of(const FilterPlane& plane) {
 
 struct BlockSides {
   std::uint32_t outside = 0;                               // bit by lane
+  std::uint32_t crossing = 0;                              // bit by lane: is anything in crossed?
   alignas(32) std::array<std::uint32_t, width> crossed{};  // by lane: planes not surely inside of
 };
 
@@ -51,48 +53,57 @@ class Walk {
 
   HWY_ATTR void run() {
     const std::uint32_t all_planes = (1U << plane_count_) - 1;
+    // First in, first out: what is to be visited is known long before, and can be fetched.
     std::vector<WideSelection::Pending>& pending = out_.pending;
-    pending.clear();
-    pending.push_back({0, all_planes});
-    while (!pending.empty()) {
-      const WideSelection::Pending next = pending.back();
-      pending.pop_back();
-      const WideNode& node = tree_.nodes[next.node];
+    std::vector<WideSelection::PendingLeaf>& leaves = out_.pending_leaves;
+    pending.assign(1, {0, all_planes});
+    leaves.clear();
+    for (std::size_t i = 0; i < pending.size(); ++i) {
+      if (i + fetch_ahead < pending.size()) fetch(&tree_.nodes[pending[i + fetch_ahead].node]);
+      const WideNode& node = tree_.nodes[pending[i].node];
       BlockSides sides;
-      test_children(node.boxes, next.planes, sides);
+      test_children(node.boxes, pending[i].planes, sides);
       const std::uint32_t open = ((1U << node.child_count) - 1) & ~sides.outside;
-      std::uint32_t crossing = 0;
-      for (std::uint32_t lane = 0; lane < width; ++lane) {
-        crossing |= (sides.crossed[lane] != 0 ? 1U : 0U) << lane;
-      }
-      for (std::uint32_t inside = open & ~crossing; inside != 0;) {
+      for (std::uint32_t inside = open & ~sides.crossing; inside != 0;) {
         const auto begin = static_cast<std::uint32_t>(std::countr_zero(inside));
         const auto length = static_cast<std::uint32_t>(std::countr_one(inside >> begin));
         take(node.first[begin], node.first[begin + length]);
         inside &= ~(((1U << length) - 1) << begin);
       }
-      crossing &= open;
-      const std::uint32_t inner_lanes = (1U << node.inner_count) - 1;
-      for (std::uint32_t lanes = crossing & ~inner_lanes; lanes != 0; lanes &= lanes - 1) {
+      for (std::uint32_t lanes = open & sides.crossing; lanes != 0; lanes &= lanes - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-        if (options_.keep_intersecting) {
+        const std::uint32_t planes = options_.masking ? sides.crossed[lane] : all_planes;
+        if (lane < node.inner_count) {
+          pending.push_back({node.first_inner + lane, planes});
+        } else if (options_.keep_intersecting) {
           take(node.first[lane], node.first[lane + 1]);
         } else {
-          test_objects(tree_.leaves[node.first_leaf + lane - node.inner_count], node.first[lane],
-                       node.first[lane + 1], options_.masking ? sides.crossed[lane] : all_planes);
+          leaves.push_back({node.first_leaf + lane - node.inner_count, node.first[lane],
+                            node.first[lane + 1] - node.first[lane], planes});
         }
       }
-      for (std::uint32_t lanes = crossing & inner_lanes; lanes != 0;) {
-        const auto lane = static_cast<std::uint32_t>(std::bit_width(lanes)) - 1;
-        lanes &= ~(1U << lane);
-        pending.push_back(
-            {node.first_inner + lane, options_.masking ? sides.crossed[lane] : all_planes});
+    }
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+      if (i + fetch_ahead < leaves.size()) {
+        fetch(&tree_.leaves[leaves[i + fetch_ahead].leaf]);
+        hwy::Prefetch(tree_.objects + leaves[i + fetch_ahead].first);
       }
+      test_objects(tree_.leaves[leaves[i].leaf], leaves[i]);
     }
     out_.loose_count = static_cast<std::size_t>(loose_ - out_.loose.data());
   }
 
  private:
+  /// How many visits ahead memory is asked for.
+  static constexpr std::size_t fetch_ahead = 8;
+
+  template <typename Block>
+  static void fetch(const Block* block) {
+    constexpr std::size_t cache_line = 64;
+    const char* bytes = reinterpret_cast<const char*>(block);
+    for (std::size_t at = 0; at < sizeof(Block); at += cache_line) hwy::Prefetch(bytes + at);
+  }
+
   /// Value of a plane at one corner of each box.
   static HWY_ATTR hn::Vec<Floats> value(const PlaneReader& plane, const float* x, const float* y,
                                         const float* z) {
@@ -130,23 +141,24 @@ class Walk {
             crossed, hn::IfThenElseZero(hn::RebindMask(du, not_inside), hn::Set(du, 1U << index)));
       }
       sides.outside |= bits_of(outside) << lane;
+      const auto crossing = hn::RebindMask(d, hn::Ne(crossed, hn::Zero(du)));
+      sides.crossing |= bits_of(crossing) << lane;
       hn::Store(crossed, du, sides.crossed.data() + lane);
     }
   }
 
-  /// The objects of one leaf, at places `begin` to `end`.
-  HWY_ATTR void test_objects(const BoxBlock& block, std::uint32_t begin, std::uint32_t end,
-                             std::uint32_t planes) {
+  /// The objects of one leaf.
+  HWY_ATTR void test_objects(const BoxBlock& block, const WideSelection::PendingLeaf& leaf) {
     const Floats d;
     const Ids du;
     ++out_.blocks_tested;
-    out_.plane_tests += static_cast<std::uint64_t>(std::popcount(planes));
-    for (std::size_t lane = 0; lane < end - begin; lane += hn::Lanes(d)) {
+    out_.plane_tests += static_cast<std::uint64_t>(std::popcount(leaf.planes));
+    for (std::size_t lane = 0; lane < leaf.count; lane += hn::Lanes(d)) {
       const float* boxes = block.bounds[0].data() + lane;
       // Lanes that may be kept, and those of them that surely are.
-      auto open = hn::FirstN(d, end - begin - lane);
+      auto open = hn::FirstN(d, leaf.count - lane);
       auto sure = open;
-      for (std::uint32_t rest = planes; rest != 0; rest &= rest - 1) {
+      for (std::uint32_t rest = leaf.planes; rest != 0; rest &= rest - 1) {
         const PlaneReader& plane = planes_[static_cast<std::size_t>(std::countr_zero(rest))];
         const auto far_value =
             value(plane, boxes + plane.p_x, boxes + plane.p_y, boxes + plane.p_z);
@@ -154,7 +166,7 @@ class Walk {
         sure = hn::And(sure, hn::Gt(far_value, hn::Set(d, 1.0F)));
       }
       const auto keep = hn::And(open, sure);
-      const ObjectId* ids = tree_.objects + begin + lane;
+      const ObjectId* ids = tree_.objects + leaf.first + lane;
       loose_ += hn::CompressStore(hn::LoadU(du, ids), hn::RebindMask(du, keep), du, loose_);
       for (std::uint32_t rest = bits_of(hn::AndNot(sure, open)); rest != 0; rest &= rest - 1) {
         out_.undecided.push_back(ids[std::countr_zero(rest)]);
