@@ -20,6 +20,8 @@ Lab make_lab() {
   lab.repository = VISLAB_SOURCE_DIR;
   lab.data = {lab.repository / "data", lab.repository / "data" / "cache"};
   lab.matrices = lab.repository / "experiments" / "matrices";
+  lab.sweeps = lab.repository / "experiments" / "stress";
+  lab.published = lab.repository / "experiments" / "published";
   lab.report = lab.repository / "report";
   return lab;
 }
@@ -38,6 +40,7 @@ class CommandLine {
     add_compare();
     add_export();
     add_report();
+    add_atlas();
     add_check();
   }
 
@@ -72,31 +75,34 @@ class CommandLine {
     add_json(sub);
   }
   void add_describe() {
-    CLI::App* const sub = verb("describe", "a culler, a scene, a matrix or a metric in full",
-                               [this] { return describe(lab_, name_, json_); });
+    CLI::App* const sub =
+        verb("describe", "a culler, a scene, a matrix, a sweep or a metric in full",
+             [this] { return describe(lab_, name_, json_); });
     sub->add_option("name", name_)->required();
     add_json(sub);
   }
   void add_plan() {
     CLI::App* const sub =
-        verb("plan", "the cells of matrices and which are done, without running them", [this] {
-          run_.json = json_;
-          return plan(lab_, run_);
-        });
-    sub->add_option("matrix", run_.matrices, "names or files")->required();
+        verb("plan", "the cells of matrices and sweeps, and which are done, without running them",
+             [this] {
+               run_.json = json_;
+               return plan(lab_, run_);
+             });
+    sub->add_option("matrix", run_.matrices, "names or files; stress = all sweeps")->required();
     add_results(sub);
     add_json(sub);
   }
   void add_run() {
-    CLI::App* const sub = verb("run", "measures matrices, or one culler on one scene", [this] {
-      run_.json = json_;
-      if (run_.matrices.empty() == run_.culler.empty() ||
-          run_.culler.empty() != run_.scene.empty()) {
-        throw InputError("run takes matrices, or --culler and --scene together");
-      }
-      return vislab::run(lab_, run_);
-    });
-    sub->add_option("matrix", run_.matrices, "names or files");
+    CLI::App* const sub =
+        verb("run", "measures matrices, stress sweeps, or one culler on one scene", [this] {
+          run_.json = json_;
+          if (run_.matrices.empty() == run_.culler.empty() ||
+              run_.culler.empty() != run_.scene.empty()) {
+            throw InputError("run takes matrices, or --culler and --scene together");
+          }
+          return vislab::run(lab_, run_);
+        });
+    sub->add_option("matrix", run_.matrices, "names or files; stress = all sweeps");
     CLI::Option* const culler =
         sub->add_option("--culler", run_.culler, "a culler or a chain: 'a[x=1] > b'");
     sub->add_option("--scene", run_.scene, "name, description, mesh or Quake III world")
@@ -158,6 +164,12 @@ class CommandLine {
                                [this] { return report(lab_, run_.results, report_folder_); });
     sub->add_option("-o,--output", report_folder_, "folder")->capture_default_str();
     add_results(sub);
+  }
+  void add_atlas() {
+    CLI::App* const sub = verb("atlas", "where methods break: the break points of stress sweeps",
+                               [this] { return atlas(lab_, run_.results, json_); });
+    add_results(sub);
+    add_json(sub);
   }
   void add_check() {
     CLI::App* const sub = verb("check", "contract tests on one culler or chain",

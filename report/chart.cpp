@@ -7,34 +7,26 @@
 
 #include "report/chart_axis.h"
 #include "report/chart_labels.h"
+#include "report/chart_parts.h"
 #include "report/format.h"
 
 namespace vislab {
 namespace {
 
+using namespace chart;
+
 // Everything in units of the drawing (1 unit = 1/4 mm as shown), y upwards.
-constexpr double chart_width = 680.0;
-constexpr double chart_height = 360.0;
 constexpr double panel_left[2] = {92.0, 414.0};
 constexpr double panel_width = 256.0;
 constexpr double y_title_distance[2] = {82.0, 46.0};  // from the panel's left
+constexpr double usual_height = 360.0;                // more if the legend is long
+constexpr double usual_legend_height = 84.0;
 constexpr double top_margin = 22.0;
 constexpr double axis_height = 50.0;  // tick labels and title below a panel
-constexpr double legend_row = 14.0;
-constexpr double legend_indent = 14.0;
-constexpr double legend_text_left = 24.0;  // from the left of an entry's mark
-constexpr double legend_letter = 5.6;      // mean width of a letter
-constexpr double legend_gap = 18.0;        // between columns
 constexpr double mark_radius = 4.5;
 constexpr double digit_width = 6.0;
 constexpr double label_height = 10.0;
 
-/// The palette of Okabe and Ito ("Color Universal Design", 2008), which colour-blind readers can
-/// tell apart; its yellow is left out, because it fades on white.
-constexpr std::array<const char*, 6> method_colours{"#0072B2", "#D55E00", "#009E73",
-                                                    "#CC79A7", "#E69F00", "#56B4E9"};
-/// gnuplot's filled square, circle, triangles, diamond and pentagon.
-constexpr std::array<int, 6> method_shapes{7, 5, 9, 13, 11, 15};
 constexpr const char* reference_colour = "#000000";
 constexpr const char* hull_style = "lw 1.6 lc rgb '#9A9A9A'";
 constexpr const char* none_style = "dt (2,4) lw 1.2 lc rgb '#777777'";
@@ -55,19 +47,6 @@ struct Panel {
   ChartAxis axis;
 };
 
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '\n') {
-      result += "\\n";
-      continue;
-    }
-    if (c == '"' || c == '\\') result += '\\';
-    result += c;
-  }
-  return result + "\"";
-}
-
 std::vector<Mark> marks_of(const BlockSummary& block) {
   const std::vector<const CellSummary*> charted = charted_cells(block);
   std::vector<Mark> marks;
@@ -82,63 +61,13 @@ std::vector<Mark> marks_of(const BlockSummary& block) {
     } else if (cell.anchor) {
       mark.shape = oracle_shapes[oracles++ % oracle_shapes.size()];
     } else {
-      // Shapes go on by one more after each turn of the colours, so that pairs do not repeat soon.
-      const std::size_t turn = methods / method_colours.size();
-      mark.colour = method_colours[methods % method_colours.size()];
-      mark.shape = method_shapes[(methods + turn) % method_shapes.size()];
-      ++methods;
+      const Look look = method_look(methods++);
+      mark.colour = look.colour;
+      mark.shape = look.shape;
     }
     marks.push_back(mark);
   }
   return marks;
-}
-
-/// How the legend fits under the panels: entries run down the columns.
-struct Legend {
-  std::vector<double> column_left;
-  std::size_t rows = 0;
-
-  double height() const { return static_cast<double>(rows) * legend_row; }
-  double left(std::size_t entry) const { return column_left[entry / rows]; }
-  double middle(std::size_t entry) const {
-    return height() - legend_row * (0.5 + static_cast<double>(entry % rows));
-  }
-};
-
-/// The fewest rows whose columns fit beside each other; `texts` in their order.
-Legend legend_for(const std::vector<std::string>& texts) {
-  Legend legend;
-  for (legend.rows = 1; legend.rows <= texts.size(); ++legend.rows) {
-    legend.column_left.clear();
-    double right = legend_indent;
-    for (std::size_t first = 0; first < texts.size(); first += legend.rows) {
-      legend.column_left.push_back(right);
-      std::size_t longest = 0;
-      for (std::size_t i = first; i < std::min(first + legend.rows, texts.size()); ++i) {
-        longest = std::max(longest, texts[i].size());
-      }
-      right += legend_text_left + legend_letter * static_cast<double>(longest) + legend_gap;
-    }
-    if (right - legend_gap <= chart_width) break;
-  }
-  legend.rows = std::min(legend.rows, texts.size());
-  return legend;
-}
-
-std::string ticks(const ChartAxis& axis) {
-  std::string list;
-  for (const auto& [position, label] : axis.ticks) {
-    std::ostringstream entry;
-    entry << quoted(label) << ' ' << position;
-    list += (list.empty() ? "" : ", ") + entry.str();
-  }
-  return "(" + list + ")";
-}
-
-void set_axis(std::ostream& out, char name, const ChartAxis& axis) {
-  out << (axis.logarithmic ? "set logscale " : "unset logscale ") << name << '\n'
-      << "set " << name << "range [" << axis.low << ':' << axis.high << "]\n"
-      << "set " << name << "tics " << ticks(axis) << '\n';
 }
 
 class ChartWriter {
@@ -163,8 +92,11 @@ class ChartWriter {
     }
     legend_ = legend_for(legend_texts_);
     panel_bottom_ = legend_.height() + axis_height;
-    panel_height_ = chart_height - top_margin - panel_bottom_;
+    chart_height_ = usual_height + std::max(0.0, legend_.height() - usual_legend_height);
+    panel_height_ = chart_height_ - top_margin - panel_bottom_;
   }
+
+  double height() const { return chart_height_; }
 
   void write() {
     for (std::size_t i = 0; i < panels_.size(); ++i) write_panel(i);
@@ -199,13 +131,6 @@ class ChartWriter {
     return panel_bottom_ + panel_height_ * panel.axis.share(value);
   }
 
-  static void margins(std::ostream& out, double left, double bottom, double width, double height) {
-    out << "set lmargin at screen " << left / chart_width << '\n'
-        << "set rmargin at screen " << (left + width) / chart_width << '\n'
-        << "set bmargin at screen " << bottom / chart_height << '\n'
-        << "set tmargin at screen " << (bottom + height) / chart_height << '\n';
-  }
-
   void write_panel(std::size_t index) {
     const Panel& panel = panels_[index];
     out_ << "unset label\nunset arrow\nunset object\nset border 3 lc rgb '#444444'\n"
@@ -217,10 +142,10 @@ class ChartWriter {
          // gnuplot would place the title by the widest tick label, and outside the drawing.
          << "set label " << quoted(panel.y_title) << " at screen "
          << (panel_left[index] - y_title_distance[index]) / chart_width << ','
-         << (panel_bottom_ + 0.5 * panel_height_) / chart_height << " center rotate by 90\n";
+         << (panel_bottom_ + 0.5 * panel_height_) / chart_height_ << " center rotate by 90\n";
     set_axis(out_, 'x', x_axis_);
     set_axis(out_, 'y', panel.axis);
-    margins(out_, panel_left[index], panel_bottom_, panel_width, panel_height_);
+    set_margins(out_, panel_left[index], panel_bottom_, panel_width, panel_height_, chart_height_);
     const double right = panel_left[index] + panel_width;
     const double top = panel_bottom_ + panel_height_;
     if (panel.axis.logarithmic) {
@@ -250,9 +175,9 @@ class ChartWriter {
   }
 
   void write_line(const ChartBox& line, const char* style) {
-    out_ << "set arrow from screen " << line.left / chart_width << ',' << line.bottom / chart_height
-         << " to screen " << line.right / chart_width << ',' << line.top / chart_height
-         << " nohead " << style << " back\n";
+    out_ << "set arrow from screen " << line.left / chart_width << ','
+         << line.bottom / chart_height_ << " to screen " << line.right / chart_width << ','
+         << line.top / chart_height_ << " nohead " << style << " back\n";
   }
 
   /// The hull of all methods that could be used (the oracles and the control are not among them) as
@@ -302,7 +227,7 @@ class ChartWriter {
       const PlacedLabel& label = labels[i];
       if (label.leader) write_leader(requests[i], label);
       out_ << "set label " << quoted(std::to_string(marks_[i].number)) << " at screen "
-           << label.x / chart_width << ',' << label.y / chart_height
+           << label.x / chart_width << ',' << label.y / chart_height_
            << " center font ',10' front\n";
     }
   }
@@ -315,8 +240,8 @@ class ChartWriter {
     const double begin = mark_radius / length;
     const double end = 1.0 - 0.5 * label_height / length;
     out_ << "set arrow from screen " << (point.x + begin * dx) / chart_width << ','
-         << (point.y + begin * dy) / chart_height << " to screen "
-         << (point.x + end * dx) / chart_width << ',' << (point.y + end * dy) / chart_height
+         << (point.y + begin * dy) / chart_height_ << " to screen "
+         << (point.x + end * dx) / chart_width << ',' << (point.y + end * dy) / chart_height_
          << " nohead lw 0.6 lc rgb '#777777' front\n";
   }
 
@@ -325,7 +250,7 @@ class ChartWriter {
             "ylabel\nunset border\n"
          << "unset tics\nunset grid\nunset logscale\nset xrange [0:" << chart_width
          << "]\nset yrange [0:" << legend_.height() << "]\n";
-    margins(out_, 0.0, 0.0, chart_width, legend_.height());
+    set_margins(out_, 0.0, 0.0, chart_width, legend_.height(), chart_height_);
     for (std::size_t i = 0; i < legend_texts_.size(); ++i) {
       const double left = legend_.left(i);
       const double middle = legend_.middle(i);
@@ -363,7 +288,7 @@ class ChartWriter {
   std::vector<Panel> panels_;
   std::vector<std::string> legend_texts_;
   Legend legend_;
-  double panel_bottom_ = 0.0, panel_height_ = 0.0;
+  double chart_height_ = 0.0, panel_bottom_ = 0.0, panel_height_ = 0.0;
 };
 
 }  // namespace
@@ -397,10 +322,11 @@ std::vector<std::size_t> pareto_hull(const std::vector<double>& x, const std::ve
 std::string chart_script(const BlockSummary& block, const std::filesystem::path& file) {
   std::ostringstream script;
   script.precision(12);
-  script << "reset\nset terminal svg size " << chart_width << ',' << chart_height
+  ChartWriter writer(block, script);
+  script << "reset\nset terminal svg size " << chart_width << ',' << writer.height()
          << " noenhanced font 'Noto Sans,11' background '#FFFFFF'\nset output "
          << quoted(file.string()) << "\nset multiplot\n";
-  ChartWriter(block, script).write();
+  writer.write();
   script << "unset multiplot\nunset output\n";
   return script.str();
 }

@@ -22,7 +22,8 @@ std::vector<const CellSummary*> charted_cells(const BlockSummary& block);
 std::vector<std::size_t> pareto_hull(const std::vector<double>& x, const std::vector<double>& y);
 
 /// gnuplot commands that draw the block's chart into `file` (SVG, 680 × 360 units, shown 17 cm wide
-/// and 9 cm high). Without a common time axis the triangles submitted take its place.
+/// and 9 cm high; higher if the legend is long). Without a common time axis the triangles submitted
+/// take its place.
 std::string chart_script(const BlockSummary& block, const std::filesystem::path& file);
 
 }  // namespace vislab

@@ -70,13 +70,6 @@ void add_errors(const CellSummary& cell, Fields& fields) {
 
 }  // namespace
 
-bool is_free_of_errors(const CellSummary& cell) {
-  if (!cell.judged || wrong_pixels(cell) > 0) return false;
-  if (cell.guarantee == Guarantee::image_exact) return true;
-  if (cell.guarantee == Guarantee::conservative && cell.false_jittered > 0) return false;
-  return cell.false_objects == 0;
-}
-
 Finding find(const BlockSummary& block) {
   if (!block.drawn) return find_undrawn(block);
   Finding finding;

@@ -28,11 +28,6 @@ struct Finding {
   const CellSummary* erring = nullptr;
 };
 
-/// True if the judge found no false pixel, the image (if drawn) unchanged, and no false object; for
-/// a conservative method also no lost sample of J. An image_exact method promises only the pixels,
-/// so an object that it loses between them is no error.
-bool is_free_of_errors(const CellSummary& cell);
-
 /// Pointers lead into `block`. Only methods count, not the anchors.
 Finding find(const BlockSummary& block);
 

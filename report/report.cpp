@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -12,6 +13,8 @@
 #include "report/method_fields.h"
 #include "report/process.h"
 #include "report/sections.h"
+#include "report/sweep_chart.h"
+#include "report/sweep_section.h"
 
 namespace vislab {
 namespace {
@@ -24,7 +27,8 @@ const Program chromium{"chromium", "chromium"};
 constexpr std::chrono::seconds time_limit{60};
 
 /// The report's parts in their order; each is templates/NAME.md.
-constexpr const char* parts[] = {"front", "floor", "scenes", "methods", "metrics", "measurement"};
+constexpr const char* parts[] = {"front",  "floor",    "guide",   "scenes",  "published",
+                                 "sweeps", "controls", "methods", "metrics", "measurement"};
 
 /// A folder for work in progress, gone with this object.
 class WorkFolder {
@@ -67,6 +71,10 @@ void draw_charts(const ReportInput& input, const fs::path& work) {
   for (std::size_t i = 0; i < input.blocks.size(); ++i) {
     if (charted_cells(input.blocks[i]).empty()) continue;
     script += chart_script(input.blocks[i], chart_file_name(i));
+  }
+  for (std::size_t i = 0; i < input.sweeps.size(); ++i) {
+    if (!has_sweep_chart(input.sweeps[i])) continue;
+    script += sweep_chart_script(input.sweeps[i], sweep_chart_file_name(i));
   }
   if (script.empty()) return;
   write_text(work / "charts.gnuplot", script);
@@ -137,7 +145,9 @@ void publish(const fs::path& work, const fs::path& folder) {
 
 void write_report(const ReportInput& input, const fs::path& template_folder,
                   const fs::path& folder) {
-  if (input.blocks.empty()) {
+  const bool no_sweep =
+      std::ranges::none_of(input.sweeps, [](const SweepResult& s) { return s.was_measured(); });
+  if (input.blocks.empty() && no_sweep) {
     throw InputError("there is nothing to report; measure something with 'vislab run' first");
   }
   const WorkFolder work;

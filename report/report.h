@@ -7,12 +7,18 @@
 #include <vector>
 
 #include "common/culler/registry.h"
+#include "experiments/analysis/break_points.h"
+#include "experiments/analysis/published.h"
 #include "experiments/analysis/summary.h"
 
 namespace vislab {
 
 struct ReportInput {
   std::vector<BlockSummary> blocks;
+  /// Blocks of stress sweeps, which stand in the sections on break points and wrong methods only.
+  std::vector<BlockSummary> sweep_blocks;
+  std::vector<SweepResult> sweeps;
+  std::vector<PublishedFigures> published;
   const Registry* cullers = nullptr;  // for the method pages
   /// Writes a picture of a block's most telling frame under a culler to `file` (PNG), as `vislab
   /// show` does; returns a caption. Empty function: no pictures.

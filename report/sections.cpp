@@ -8,9 +8,11 @@
 #include "common/judge/metrics.h"
 #include "common/scene/error.h"
 #include "report/chart.h"
+#include "report/comparison_sections.h"
 #include "report/finding.h"
 #include "report/format.h"
 #include "report/method_fields.h"
+#include "report/sweep_section.h"
 
 namespace vislab {
 namespace {
@@ -317,6 +319,13 @@ Fields report_fields(const ReportInput& input, const std::string& verdict_templa
     fields.lists["scenes"].push_back(std::move(scene));
   }
   fields.flag("has_floors", !floors.empty());
+  fields.lists["guides"] = guide_fields(input.blocks);
+  fields.lists["published"] = published_fields(input.published, input.blocks);
+  fields.flag("has_published", !fields.lists["published"].empty());
+  fields.lists["sweeps"] = sweep_fields(input.sweeps);
+  fields.flag("has_sweeps", !fields.lists["sweeps"].empty());
+  fields.lists["controls"] = control_fields(input);
+  fields.flag("has_controls", !fields.lists["controls"].empty());
   fields.lists["methods"] = method_fields(input);
   fields.lists["metrics"] = metric_fields();
   fields.lists["mixed_build"] = mixed_build_fields(input.blocks);

@@ -267,6 +267,7 @@ BlockSummary summarise_block(const std::vector<const JudgedCell*>& cells) {
   block.seed = first.key.seed;
   block.objects = first.scene_objects;
   block.triangles = first.scene_triangles;
+  block.moving_objects = first.moving_objects;
   block.context = first.context;
   block.mixed_context = mixed_context(cells);
   block.noise = Estimate::none();
@@ -323,6 +324,13 @@ double CellSummary::metric(const std::string& name) const {
   if (name == "efficiency") return efficiency.value;
   if (const auto found = counters.find(name); found != counters.end()) return found->second;
   return nan;
+}
+
+bool is_free_of_errors(const CellSummary& cell) {
+  if (!cell.judged || cell.false_px > 0 || (cell.drawn && cell.image_px > 0)) return false;
+  if (cell.guarantee == Guarantee::image_exact) return true;
+  if (cell.guarantee == Guarantee::conservative && cell.false_jittered > 0) return false;
+  return cell.false_objects == 0;
 }
 
 std::vector<BlockSummary> summarise(const std::vector<JudgedCell>& cells) {

@@ -71,6 +71,11 @@ struct CellSummary {
   double metric(const std::string& name) const;
 };
 
+/// True if the judge found no false pixel, the image (if drawn) unchanged, and no false object; for
+/// a conservative method also no lost sample of J. An image_exact method promises only the pixels,
+/// so an object that it loses between them is no error.
+bool is_free_of_errors(const CellSummary& cell);
+
 struct BlockSummary {
   std::string scene, scene_description, path;
   std::string scene_hash, path_hash;
@@ -80,6 +85,7 @@ struct BlockSummary {
   std::uint64_t seed = 0;
   int frames = 0;
   std::uint64_t objects = 0, triangles = 0;
+  double moving_objects = 0.0;  // a frame
   /// False on the device "none": there are no images, and times hold no drawing to be saved.
   bool drawn = true;
   /// Truth against the unculled image, over all frames.

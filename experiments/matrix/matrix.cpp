@@ -1,58 +1,27 @@
 #include "experiments/matrix/matrix.h"
 
-#define TOML_EXCEPTIONS 1
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <optional>
 
 #include "common/scene/error.h"
 #include "experiments/matrix/resolution.h"
+#include "experiments/matrix/toml_keys.h"
 
 namespace vislab {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Where a TOML value stands: "file.toml:12".
-std::string place(const std::string& file, const toml::node& node) {
-  return file + ":" + std::to_string(node.source().begin.line);
-}
-
-void refuse_unknown_keys(const toml::table& table, const std::vector<std::string>& known,
-                         const std::string& what, const std::string& file) {
-  for (const auto& [key, node] : table) {
-    const std::string name(key.str());
-    if (std::ranges::find(known, name) == known.end()) {
-      throw InputError(place(file, node) + ": " +
-                       unknown_name("key of " + what, name, known).what());
-    }
-  }
-}
-
-template <typename T>
-std::optional<T> value_of(const toml::table& table, std::string_view key, const std::string& type,
-                          const std::string& file) {
-  const toml::node* node = table.get(key);
-  if (node == nullptr) return std::nullopt;
-  const std::optional<T> value = node->value<T>();
-  if (!value) throw InputError(place(file, *node) + ": " + std::string(key) + " must be " + type);
-  return value;
-}
-
-int whole_number(const toml::node& node, std::string_view key, long long min, long long max,
-                 const std::string& file) {
-  const std::optional<long long> value = node.value_exact<std::int64_t>();
-  if (!value || *value < min || *value > max) {
-    throw InputError(place(file, node) + ": " + std::string(key) + " must be a whole number from " +
-                     std::to_string(min) + " to " + std::to_string(max));
-  }
-  return static_cast<int>(*value);
-}
+using namespace toml_keys;
 
 /// Patterns of [[exclude]] and [[adjust]]; an empty pattern fits everything.
 struct Pattern {
   std::string culler = "*", scene = "*", path = "*", resolution = "*";
+};
+
+/// Paths of the scenes that fit, instead of those of the lists.
+struct OwnPaths {
+  std::string scene;
+  std::vector<std::string> paths;
 };
 
 struct Adjustment {
@@ -64,36 +33,15 @@ struct Adjustment {
 /// A matrix file as it is written, before its lists are multiplied.
 struct Description {
   std::string text;
-  int rounds = 5;
-  std::uint64_t seed = 1;
-  int threads = 2;
-  std::string draw = "osmesa";
-  double timeout_s = 300.0;
+  PassSettings pass;
   std::vector<std::string> cullers, scenes;
   std::vector<std::string> paths{""};
   std::vector<Viewport> resolutions{Viewport{}};
   std::vector<int> frames{60};
+  std::vector<OwnPaths> own_paths;
   std::vector<Pattern> excluded;
   std::vector<Adjustment> adjusted;
 };
-
-std::vector<std::string> text_list(const toml::node& node, std::string_view key,
-                                   const std::string& file) {
-  const toml::array* array = node.as_array();
-  if (array == nullptr || array->empty()) {
-    throw InputError(place(file, node) + ": " + std::string(key) +
-                     " must be a list of texts with at least one entry");
-  }
-  std::vector<std::string> list;
-  for (const toml::node& entry : *array) {
-    const std::optional<std::string> text = entry.value_exact<std::string>();
-    if (!text) {
-      throw InputError(place(file, entry) + ": " + std::string(key) + " must be a list of texts");
-    }
-    list.push_back(*text);
-  }
-  return list;
-}
 
 void read_lists(const toml::table& lists, Description& description, const std::string& file) {
   refuse_unknown_keys(lists, {"culler", "scene", "path", "resolution", "frames"}, "[lists]", file);
@@ -123,15 +71,6 @@ void read_lists(const toml::table& lists, Description& description, const std::s
   }
 }
 
-const toml::array* tables(const toml::table& root, std::string_view key, const std::string& file) {
-  const toml::node* node = root.get(key);
-  if (node == nullptr) return nullptr;
-  if (!node->is_array_of_tables()) {
-    throw InputError(place(file, *node) + ": write [[" + std::string(key) + "]]");
-  }
-  return node->as_array();
-}
-
 Pattern read_pattern(const toml::table& table, const std::string& file) {
   Pattern pattern;
   const auto read = [&](std::string_view key, std::string& into) {
@@ -156,17 +95,10 @@ fs::path find_matrix(const std::string& name_or_file, const fs::path& folder) {
 
 Description read_description(const fs::path& path, const fs::path& folder, int depth) {
   const std::string file = path.string();
-  toml::table root;
-  try {
-    root = toml::parse_file(file);
-  } catch (const toml::parse_error& error) {
-    throw InputError(file + ":" + std::to_string(error.source().begin.line) + ": " +
-                     std::string(error.description()));
-  }
-  refuse_unknown_keys(root,
-                      {"description", "extends", "rounds", "seed", "threads", "draw", "timeout_s",
-                       "lists", "exclude", "adjust"},
-                      "a matrix", file);
+  const toml::table root = parse_file(path);
+  std::vector<std::string> known{"description", "extends", "lists", "paths", "exclude", "adjust"};
+  known.insert(known.end(), pass_keys.begin(), pass_keys.end());
+  refuse_unknown_keys(root, known, "a matrix", file);
   Description description;
   if (const auto base = value_of<std::string>(root, "extends", "the name of a matrix", file)) {
     if (depth > 8) throw InputError(file + ": matrices extend each other in a circle");
@@ -175,31 +107,22 @@ Description read_description(const fs::path& path, const fs::path& folder, int d
   if (auto text = value_of<std::string>(root, "description", "a text", file)) {
     description.text = *text;
   }
-  if (const auto* node = root.get("rounds")) {
-    description.rounds = whole_number(*node, "rounds", 1, 1000, file);
-  }
-  if (const auto* node = root.get("seed")) {
-    description.seed = static_cast<std::uint64_t>(whole_number(*node, "seed", 0, 2147483647, file));
-  }
-  if (const auto* node = root.get("threads")) {
-    description.threads = whole_number(*node, "threads", 1, 1024, file);
-  }
-  if (auto draw = value_of<std::string>(root, "draw", "a text", file)) {
-    if (*draw != "osmesa" && *draw != "none") {
-      throw InputError(place(file, *root.get("draw")) + ": " +
-                       unknown_name("value of draw", *draw, {"osmesa", "none"}).what());
-    }
-    description.draw = *draw;
-  }
-  if (auto seconds = value_of<double>(root, "timeout_s", "a number of seconds", file)) {
-    if (!(*seconds > 0.0)) {
-      throw InputError(place(file, *root.get("timeout_s")) + ": timeout_s must be above 0");
-    }
-    description.timeout_s = *seconds;
-  }
+  read_pass_settings(root, description.pass, file);
   if (const toml::node* lists = root.get("lists")) {
     if (!lists->is_table()) throw InputError(place(file, *lists) + ": write [lists]");
     read_lists(*lists->as_table(), description, file);
+  }
+  if (const toml::array* own_paths = tables(root, "paths", file)) {
+    for (const toml::node& node : *own_paths) {
+      const toml::table& table = *node.as_table();
+      refuse_unknown_keys(table, {"scene", "path"}, "[[paths]]", file);
+      const auto scene = value_of<std::string>(table, "scene", "a text", file);
+      const toml::node* const paths = table.get("path");
+      if (!scene || paths == nullptr) {
+        throw InputError(place(file, node) + ": [[paths]] needs a scene and a list of paths");
+      }
+      description.own_paths.push_back({*scene, text_list(*paths, "path", file)});
+    }
   }
   if (const toml::array* excluded = tables(root, "exclude", file)) {
     for (const toml::node& node : *excluded) {
@@ -236,7 +159,28 @@ bool fits(const Pattern& pattern, const Block& block) {
          matches(pattern.resolution, to_text(block.viewport));
 }
 
-/// The anchors and the A/A control, then what is asked for, each chain once.
+/// The last entry that fits counts.
+const std::vector<std::string>& paths_of(const std::string& scene, const Description& description) {
+  const std::vector<std::string>* paths = &description.paths;
+  for (const OwnPaths& own : description.own_paths) {
+    if (matches(own.scene, scene)) paths = &own.paths;
+  }
+  return *paths;
+}
+
+}  // namespace
+
+std::string Block::title() const {
+  if (!label.empty()) return label;
+  return scene + (path.empty() ? "" : ", " + path) + ", " + to_text(viewport) +
+         (device == "none" ? ", not drawn" : "");
+}
+
+std::vector<std::string> anchor_chains(const Registry& registry) {
+  return {registry.canonical("none"), registry.canonical("oracle[level=object]"),
+          registry.canonical("oracle[level=triangle]")};
+}
+
 std::vector<BlockCuller> with_anchors(const std::vector<std::string>& chains,
                                       const Registry& registry) {
   std::vector<BlockCuller> cullers;
@@ -248,18 +192,6 @@ std::vector<BlockCuller> with_anchors(const std::vector<std::string>& chains,
     }
   }
   return cullers;
-}
-
-}  // namespace
-
-std::string Block::title() const {
-  return scene + (path.empty() ? "" : ", " + path) + ", " + to_text(viewport) +
-         (device == "none" ? ", not drawn" : "");
-}
-
-std::vector<std::string> anchor_chains(const Registry& registry) {
-  return {registry.canonical("none"), registry.canonical("oracle[level=object]"),
-          registry.canonical("oracle[level=triangle]")};
 }
 
 bool matches(std::string_view pattern, std::string_view text) {
@@ -292,18 +224,18 @@ Matrix load_matrix(const std::string& name_or_file, const fs::path& folder,
     }
   }
   for (const std::string& scene : description.scenes) {
-    for (const std::string& path : description.paths) {
+    for (const std::string& path : paths_of(scene, description)) {
       for (const Viewport& viewport : description.resolutions) {
         for (const int frames : description.frames) {
           Block block{scene,
                       path,
                       viewport,
                       frames,
-                      description.draw,
-                      description.seed,
-                      description.threads,
-                      description.rounds,
-                      description.timeout_s,
+                      description.pass.draw,
+                      description.pass.seed,
+                      description.pass.threads,
+                      description.pass.rounds,
+                      description.pass.timeout_s,
                       {}};
           for (const Adjustment& adjustment : description.adjusted) {
             if (!fits(adjustment.pattern, block)) continue;

@@ -13,6 +13,9 @@
 //   path = [""]                    "" = the scene's own
 //   resolution = ["512x512"]
 //   frames = [60]                  0 = as many as the path has
+//   [[paths]]                      scenes that fit take these paths instead of those of [lists]
+//   scene = "hares_*"
+//   path = ["hares_still", "hares_walk"]
 //   [[exclude]]                    leaves out cells; * matches any text
 //   culler = "occlusion.*"
 //   scene = "hares_*"
@@ -52,6 +55,7 @@ struct Block {
   int rounds = 5;
   double timeout_s = 300.0;
   std::vector<BlockCuller> cullers;  // anchors first
+  std::string label = {};            // instead of the title made from the above
 
   /// "dragon, 512x512, osmesa"
   std::string title() const;
@@ -65,6 +69,10 @@ struct Matrix {
 
 /// The chains that stand in every block, canonical, without the A/A control.
 std::vector<std::string> anchor_chains(const Registry& registry);
+
+/// The anchors and the A/A control, then `chains` (canonical), each once.
+std::vector<BlockCuller> with_anchors(const std::vector<std::string>& chains,
+                                      const Registry& registry);
 
 /// `name_or_file` is NAME of `folder`/NAME.toml, or a file. Throws InputError that names file, line
 /// or key, and what would be right. Cullers and their parameters are checked; scenes are not

@@ -112,6 +112,7 @@ std::string to_json(const ResultCell& cell) {
                   {"path_source", cell.path_source},
                   {"scene_objects", cell.scene_objects},
                   {"scene_triangles", cell.scene_triangles},
+                  {"moving_objects", cell.moving_objects},
                   {"status", to_string(cell.status)},
                   {"reason", cell.reason},
                   {"guarantee", to_string(cell.guarantee)},
@@ -146,6 +147,7 @@ std::optional<ResultCell> parse_cell(const std::string& text, const std::string&
     cell.path_source = j.at("path_source");
     cell.scene_objects = j.at("scene_objects");
     cell.scene_triangles = j.at("scene_triangles");
+    cell.moving_objects = j.value("moving_objects", 0.0);  // since paths can move objects
     cell.status = from_name(j.at("status").get<std::string>(), statuses, where);
     cell.reason = j.at("reason");
     cell.guarantee = from_name(j.at("guarantee").get<std::string>(), guarantees, where);

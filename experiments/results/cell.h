@@ -60,6 +60,7 @@ struct ResultCell {
   std::string scene_source;  // the name or file that the scene was loaded by
   std::string path_source;   // likewise; "" = the scene's own path
   std::uint64_t scene_objects = 0, scene_triangles = 0;
+  double moving_objects = 0.0;  // a frame: mean over the path
 
   enum class Status { running, done, failed } status = Status::running;
   std::string reason;  // of a failure: "timed out after 300 s", "out of memory", …

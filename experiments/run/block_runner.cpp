@@ -169,6 +169,9 @@ class BlockRun {
     cell.path_source = block_.path;
     cell.scene_objects = scene_->object_count();
     cell.scene_triangles = scene_->triangle_count();
+    std::size_t moves = 0;
+    for (const PathFrame& frame : path_.frames) moves += frame.changes.moved.size();
+    cell.moving_objects = static_cast<double>(moves) / static_cast<double>(path_.frames.size());
     return cell;
   }
 

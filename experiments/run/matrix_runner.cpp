@@ -247,18 +247,21 @@ RunOutcome run_blocks(const std::vector<Block>& blocks, const RunOptions& option
   remove_temporary_files(options.settings.results);
   RunSettings settings = options.settings;
   settings.run = new_run();
-  std::vector<Block> mine;
+  std::vector<std::size_t> mine;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    if (static_cast<int>(i) % options.shards == options.shard - 1) mine.push_back(blocks[i]);
+    if (static_cast<int>(i) % options.shards == options.shard - 1) mine.push_back(i);
   }
+  total.cells_of_block.resize(blocks.size());
   for (std::size_t i = 0; i < mine.size() && stop_requested == 0; ++i) {
     progress.set_blocks(static_cast<int>(i), static_cast<int>(mine.size()));
-    const Block& block = mine[i];
+    const Block& block = blocks[mine[i]];
     settings.given_up.clear();
     // A cell that brings the process down is marked as failed and left out of the next attempt.
     for (std::size_t attempt = 0; attempt <= block.cullers.size(); ++attempt) {
       const Child child = run_in_child(block, settings, registry, progress);
       total.cells.insert(child.members.begin(), child.members.end());
+      std::vector<std::string>& members = total.cells_of_block[mine[i]];
+      members.insert(members.end(), child.members.begin(), child.members.end());
       if (child.outcome) {
         const BlockOutcome& outcome = *child.outcome;
         total.measured += outcome.measured;

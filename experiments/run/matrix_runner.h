@@ -16,7 +16,9 @@ struct RunOptions {
 };
 
 struct RunOutcome {
-  std::set<std::string> cells;                // ids of all cells of the blocks
+  std::set<std::string> cells;  // ids of all cells of the blocks
+  /// The same for each block; empty for blocks that this run did not look at.
+  std::vector<std::vector<std::string>> cells_of_block;
   int measured = 0, present = 0, failed = 0;  // cells
   bool stopped = false;                       // by Ctrl-C
   std::vector<std::string> errors;            // of blocks whose input was wrong

@@ -4,6 +4,7 @@
 #include "common/judge/metrics.h"
 #include "common/scene/error.h"
 #include "experiments/matrix/matrix.h"
+#include "experiments/matrix/sweep.h"
 #include "experiments/verbs/table.h"
 #include "experiments/verbs/verbs.h"
 
@@ -92,6 +93,32 @@ void describe_scene(const Lab& lab, const std::string& name, bool json) {
   facts.print(std::cout, json);
 }
 
+/// Expectations, one a culler.
+void describe_sweep(const Lab& lab, const std::string& name, bool json) {
+  const Sweep sweep = load_sweep(name, lab.sweeps, "out/results", lab.cullers);
+  Facts facts;
+  facts.add("name", sweep.name);
+  facts.add("description", sweep.description);
+  facts.add("failure", sweep.failure);
+  facts.add("dial", sweep.dial.name);
+  facts.add("unit", sweep.dial.unit);
+  facts.add("values", joined(sweep.dial.texts, ", "));
+  facts.add(sweep.limit.is_counter ? "counter" : "metric", sweep.limit.metric);
+  if (sweep.limit.at_most) facts.add("at_most", *sweep.limit.at_most);
+  if (sweep.limit.at_most_ratio) facts.add("at_most_ratio", *sweep.limit.at_most_ratio);
+  for (const SweepMethod& method : sweep.methods) {
+    std::string expected = "nothing expected";
+    if (const auto& expectation = method.expectation) {
+      expected = (expectation->never ? "never breaks"
+                                     : "breaks within " + to_text(expectation->low) + " to " +
+                                           to_text(expectation->high)) +
+                 std::string("; ") + expectation->because + " (" + expectation->source + ")";
+    }
+    facts.add("culler " + method.culler, expected);
+  }
+  facts.print(std::cout, json);
+}
+
 bool describe_metric(const std::string& name, bool json) {
   const auto metric = std::ranges::find(metrics(), name, &Metric::name);
   if (metric == metrics().end()) return false;
@@ -124,6 +151,11 @@ int describe(const Lab& lab, const std::string& name, bool json) {
     facts.add("description", description);
     facts.add("blocks", std::uint64_t{load_matrix(name, lab.matrices, lab.cullers).blocks.size()});
     facts.print(std::cout, json);
+    return 0;
+  }
+  for (const auto& [sweep, description] : list_sweeps(lab.sweeps)) {
+    if (sweep != name) continue;
+    describe_sweep(lab, name, json);
     return 0;
   }
   if (describe_metric(name, json)) return 0;

@@ -3,6 +3,7 @@
 #include "common/judge/metrics.h"
 #include "common/scene/error.h"
 #include "experiments/matrix/matrix.h"
+#include "experiments/matrix/sweep.h"
 #include "experiments/verbs/table.h"
 #include "experiments/verbs/verbs.h"
 
@@ -30,9 +31,12 @@ void list_scenes_of(const Lab& lab, bool json) {
 }
 
 void list_matrices_of(const Lab& lab, bool json) {
-  Table table({"name", "description"});
+  Table table({"name", "kind", "description"});
   for (const auto& [name, description] : list_matrices(lab.matrices)) {
-    table.add({name, description});
+    table.add({name, std::string("matrix"), description});
+  }
+  for (const auto& [name, description] : list_sweeps(lab.sweeps)) {
+    table.add({name, std::string("stress sweep"), description});
   }
   table.print(std::cout, json);
 }

@@ -7,14 +7,57 @@
 #include "experiments/matrix/resolution.h"
 #include "experiments/run/matrix_runner.h"
 #include "experiments/verbs/present_results.h"
+#include "experiments/verbs/sweep_results.h"
 #include "experiments/verbs/table.h"
 #include "experiments/verbs/verbs.h"
 
 namespace vislab {
 namespace {
 
-std::vector<Block> blocks_of(const Lab& lab, const RunCall& call) {
+constexpr const char* all_sweeps = "stress";
+
+/// What a call asks for.
+struct Work {
   std::vector<Block> blocks;
+  std::vector<Sweep> sweeps;
+  std::vector<std::size_t> first_block;  // of each sweep
+};
+
+void add_sweep(Work& work, Sweep sweep) {
+  work.first_block.push_back(work.blocks.size());
+  work.blocks.insert(work.blocks.end(), sweep.blocks.begin(), sweep.blocks.end());
+  work.sweeps.push_back(std::move(sweep));
+}
+
+/// Matrices are looked for before sweeps, and both by name before by file.
+void add_named(Work& work, const std::string& name, const Lab& lab,
+               const std::filesystem::path& results) {
+  const auto is_in = [&](const std::filesystem::path& folder) {
+    return std::filesystem::is_regular_file(folder / (name + ".toml"));
+  };
+  if (!is_in(lab.matrices) && name == all_sweeps) {
+    for (Sweep& sweep : load_sweeps(lab.sweeps, results, lab.cullers)) {
+      add_sweep(work, std::move(sweep));
+    }
+    return;
+  }
+  const bool is_file = std::filesystem::is_regular_file(name);
+  if (!is_in(lab.matrices) && (is_in(lab.sweeps) || (is_file && is_sweep_file(name)))) {
+    add_sweep(work, load_sweep(name, lab.sweeps, results, lab.cullers));
+    return;
+  }
+  if (!is_in(lab.matrices) && !std::filesystem::exists(name)) {
+    std::vector<std::string> known{all_sweeps};
+    for (const auto& [matrix, text] : list_matrices(lab.matrices)) known.push_back(matrix);
+    for (const auto& [sweep, text] : list_sweeps(lab.sweeps)) known.push_back(sweep);
+    throw unknown_name("matrix, stress sweep or file", name, known);
+  }
+  const Matrix matrix = load_matrix(name, lab.matrices, lab.cullers);
+  work.blocks.insert(work.blocks.end(), matrix.blocks.begin(), matrix.blocks.end());
+}
+
+Work work_of(const Lab& lab, const RunCall& call) {
+  Work work;
   if (!call.culler.empty()) {
     Block block;
     block.scene = call.scene;
@@ -24,16 +67,13 @@ std::vector<Block> blocks_of(const Lab& lab, const RunCall& call) {
     block.rounds = call.rounds;
     block.device = call.draw;
     block.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    blocks = single_block(call.culler, block, lab.cullers).blocks;
+    work.blocks = single_block(call.culler, block, lab.cullers).blocks;
   }
-  for (const std::string& name : call.matrices) {
-    const Matrix matrix = load_matrix(name, lab.matrices, lab.cullers);
-    blocks.insert(blocks.end(), matrix.blocks.begin(), matrix.blocks.end());
-  }
+  for (const std::string& name : call.matrices) add_named(work, name, lab, call.results);
   if (call.threads > 0) {
-    for (Block& block : blocks) block.threads = call.threads;
+    for (Block& block : work.blocks) block.threads = call.threads;
   }
-  return blocks;
+  return work;
 }
 
 /// "2/4" as {2, 4}.
@@ -129,7 +169,7 @@ int plan(const Lab& lab, const RunCall& call) {
   std::vector<JudgedCell> stored;
   if (std::filesystem::exists(call.results / "cells"))
     stored = present_cells(call.results, lab.cullers);
-  const std::vector<Block> blocks = blocks_of(lab, call);
+  const std::vector<Block> blocks = work_of(lab, call).blocks;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const Block& block = blocks[i];
     for (const BlockCuller& culler : block.cullers) {
@@ -146,8 +186,8 @@ int plan(const Lab& lab, const RunCall& call) {
 }
 
 int run(const Lab& lab, const RunCall& call) {
-  const std::vector<Block> blocks = blocks_of(lab, call);
-  require_filter_fits(lab, call, blocks);
+  const Work work = work_of(lab, call);
+  require_filter_fits(lab, call, work.blocks);
   RunOptions options;
   options.settings.folders = lab.data;
   options.settings.repository = lab.repository;
@@ -157,7 +197,11 @@ int run(const Lab& lab, const RunCall& call) {
   options.settings.retry_failed = call.retry_failed;
   std::tie(options.shard, options.shards) = parse_shard(call.shard);
   options.quiet = call.quiet;
-  const RunOutcome outcome = run_blocks(blocks, options, lab.cullers);
+  for (const Sweep& sweep : work.sweeps) write_sweep_files(sweep);
+  const RunOutcome outcome = run_blocks(work.blocks, options, lab.cullers);
+  for (std::size_t i = 0; i < work.sweeps.size(); ++i) {
+    note_sweep_cells(work.sweeps[i], outcome, work.first_block[i], call.results);
+  }
   if (!outcome.errors.empty()) {
     std::string all;
     for (const std::string& error : outcome.errors) all += (all.empty() ? "" : "\n") + error;

@@ -17,16 +17,18 @@ struct Lab {
   DataFolders data;
   std::filesystem::path repository;
   std::filesystem::path matrices;
-  std::filesystem::path report;  // templates
+  std::filesystem::path sweeps;     // experiments/stress
+  std::filesystem::path published;  // figures of the sources
+  std::filesystem::path report;     // templates
 };
 
 /// `what` is cullers, scenes, matrices or metrics.
 int list(const Lab& lab, const std::string& what, bool json);
-/// `name` is a culler, a chain, a scene, a matrix or a metric.
+/// `name` is a culler, a chain, a scene, a matrix, a sweep or a metric.
 int describe(const Lab& lab, const std::string& name, bool json);
 
 struct RunCall {
-  std::vector<std::string> matrices;
+  std::vector<std::string> matrices;  // or stress sweeps; "stress" stands for all sweeps
   // Instead of matrices: one culler on one scene.
   std::string culler, scene, path;
   std::string resolution = "512x512";
@@ -57,6 +59,9 @@ int compare(const Lab& lab, const std::string& a, const std::string& b,
 int export_results(const Lab& lab, const std::string& format, const std::filesystem::path& results);
 int report(const Lab& lab, const std::filesystem::path& results,
            const std::filesystem::path& output);
+/// The break points of all stress sweeps that were run. 1 if a promise is broken or an expectation
+/// is not met.
+int atlas(const Lab& lab, const std::filesystem::path& results, bool json);
 int check(const Lab& lab, const std::string& culler, bool json);
 
 }  // namespace vislab

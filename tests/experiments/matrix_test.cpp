@@ -72,6 +72,15 @@ TEST_F(MatrixFile, ExcludeLeavesOutWhatFitsAllItsPatterns) {
   EXPECT_EQ(count_of(matrix.blocks[1], backface), 1U);
 }
 
+TEST_F(MatrixFile, ScenesMayHavePathsOfTheirOwn) {
+  const Matrix matrix = load(
+      "[lists]\nculler = [\"frustum.flat\"]\nscene = [\"a\", \"hares_14\"]\n"
+      "path = [\"p\", \"q\"]\n[[paths]]\nscene = \"hares_*\"\npath = [\"walk\"]\n");
+  ASSERT_EQ(matrix.blocks.size(), 3U);
+  EXPECT_EQ(matrix.blocks[1].path, "q");
+  EXPECT_EQ(matrix.blocks[2].path, "walk");
+}
+
 TEST_F(MatrixFile, AdjustChangesTheBlocksThatFit) {
   const Matrix matrix = load(
       "rounds = 5\n[lists]\nculler = [\"frustum.flat\"]\nscene = [\"a\", \"b\"]\n"
@@ -114,9 +123,10 @@ TEST_F(MatrixFile, ErrorsNameFileLineAndWhatWouldBeRight) {
   expect(lists + "resolution = [\"512\"]\n", {"test.toml:4", "WIDTHxHEIGHT"});
   expect("[lists]\nculler = [\"none\"]\n", {"scene"});
   expect("[lists]\nculler = [\"frustum.flat[test=cone]\"]\nscene = [\"a\"]\n",
-         {"cone", "box", "sphere"});
+         {"cone", "vertex", "sphere"});
   expect(lists + "[exclude]\nscene = \"a\"\n", {"test.toml:4", "[[exclude]]"});
   expect(lists + "[[exclude]]\nscene = \"*\"\n", {"no cell"});
+  expect(lists + "[[paths]]\nscene = \"a\"\n", {"test.toml:4", "[[paths]]", "list of paths"});
   expect("extends = \"nothing\"\n" + lists, {"nothing"});
 }
 

@@ -121,6 +121,25 @@ TEST_F(Report, SaysWhereNothingWasDrawnAndWhereBuildsDiffer) {
   EXPECT_EQ(words.find("saves 71 %"), std::string::npos);
 }
 
+TEST_F(Report, SweepsStandInASectionOfTheirOwn) {
+  ReportInput input = fabricated_input();
+  Sweep sweep;
+  sweep.name = "made_up_sweep";
+  sweep.failure = "F1";
+  sweep.description = "Boxes grow";
+  sweep.dial = {"edge", "m", {1, 2}, {"1", "2"}};
+  sweep.methods = {{"frustum.flat", {"frustum.flat", "frustum.flat"}, {}}};
+  const CellSummary cell = fabricated_cell("frustum.flat", 0.3, 0, 1.0);
+  input.sweeps.push_back(
+      find_break_points(sweep, [&](std::size_t, const std::string&) { return &cell; }));
+  write_report(input, templates, folder_);
+  const std::string words = words_of(read(folder_ / "index.html"));
+  EXPECT_NE(words.find("Where methods break"), std::string::npos);
+  EXPECT_NE(words.find("none within 1 m to 2 m"), std::string::npos);
+  write_report(fabricated_input(), templates, folder_);
+  EXPECT_EQ(words_of(read(folder_ / "index.html")).find("Where methods break"), std::string::npos);
+}
+
 TEST_F(Report, ThePageRefersToNothingOutside) {
   write_report(fabricated_input(), templates, folder_);
   const std::string html = read(folder_ / "index.html");

@@ -1,0 +1,139 @@
+#include "experiments/analysis/break_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/judge/metrics.h"
+
+namespace vislab {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double approximate_share = 0.01;  // of the pixels: what approximate methods may lose
+constexpr double default_ratio = 2.0;
+
+using State = SweepPoint::State;
+using Agreement = SweepVerdict::Agreement;
+
+SweepPoint point_of(const CellSummary* cell, const SweepLimit& limit) {
+  SweepPoint point;
+  point.figure = nan;
+  if (cell == nullptr) return point;
+  if (cell->status == ResultCell::Status::failed) {
+    point.state = State::failed;
+    point.reason = cell->reason;
+    return point;
+  }
+  if (cell->status != ResultCell::Status::done || !cell->judged) return point;
+  point.state = State::measured;
+  point.figure = cell->metric(limit.metric);
+  point.false_px = cell->false_px;
+  point.false_jittered = cell->false_jittered;
+  return point;
+}
+
+bool grows_with_the_scene(const std::string& metric) {
+  if (metric == "over" || metric == "over_objects") return true;
+  const auto known = std::ranges::find(metrics(), metric, &Metric::name);
+  return known != metrics().end() && (known->unit == "us" || known->unit == "ms");
+}
+
+double highest_allowed(const SweepLimit& limit, Guarantee guarantee, double first,
+                       std::uint64_t pixels) {
+  if (limit.at_most) return *limit.at_most;
+  if (limit.at_most_ratio) return *limit.at_most_ratio * first;
+  if (grows_with_the_scene(limit.metric)) return default_ratio * first;
+  if (limit.metric == "false_px" && guarantee == Guarantee::approximate) {
+    return approximate_share * static_cast<double>(pixels);
+  }
+  return 0.0;
+}
+
+bool breaks_a_promise(const SweepPoint& point, Guarantee guarantee) {
+  if (point.state != State::measured) return false;
+  if (guarantee == Guarantee::conservative) return point.false_px + point.false_jittered > 0;
+  return guarantee == Guarantee::image_exact && point.false_px > 0;
+}
+
+Agreement agreement_of(const SweepVerdict& verdict, const SweepDial& dial) {
+  if (!verdict.expectation) return Agreement::nothing_expected;
+  const SweepExpectation& expected = *verdict.expectation;
+  if (!verdict.is_complete) return Agreement::unknown;
+  if (!verdict.break_point) return expected.never ? Agreement::agrees : Agreement::differs;
+  const double value = dial.values[*verdict.break_point];
+  const bool within = !expected.never && value >= expected.low && value <= expected.high;
+  return within ? Agreement::agrees : Agreement::differs;
+}
+
+SweepVerdict verdict_on(const Sweep& sweep, const SweepMethod& method, const CellAtValue& cell_at) {
+  SweepVerdict verdict;
+  verdict.culler = method.culler;
+  verdict.expectation = method.expectation;
+  std::uint64_t pixels = 0;
+  for (std::size_t i = 0; i < method.chains.size(); ++i) {
+    const CellSummary* const cell = cell_at(i, method.chains[i]);
+    verdict.points.push_back(point_of(cell, sweep.limit));
+    if (cell == nullptr) continue;
+    verdict.guarantee = std::max(verdict.guarantee, cell->guarantee);
+    if (pixels == 0) pixels = cell->pixels;
+  }
+  const std::vector<SweepPoint>& points = verdict.points;
+  verdict.limit = highest_allowed(sweep.limit, verdict.guarantee, points.front().figure, pixels);
+  verdict.is_complete = true;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const SweepPoint& point = points[i];
+    const bool measured = point.state == State::measured && !std::isnan(point.figure);
+    if (!verdict.break_point) {
+      if (point.state == State::failed || (measured && point.figure > verdict.limit)) {
+        verdict.break_point = i;
+      } else if (!measured) {
+        verdict.is_complete = false;
+      }
+    }
+    if (!verdict.broken_promise && breaks_a_promise(point, verdict.guarantee)) {
+      verdict.broken_promise = i;
+    }
+    if (!measured) continue;
+    if (!verdict.worst || point.figure > points[*verdict.worst].figure) verdict.worst = i;
+    if (!verdict.least || point.figure < points[*verdict.least].figure) verdict.least = i;
+  }
+  if (std::isnan(verdict.limit) && !verdict.break_point) verdict.is_complete = false;
+  verdict.agreement = agreement_of(verdict, sweep.dial);
+  return verdict;
+}
+
+}  // namespace
+
+bool SweepVerdict::was_measured() const {
+  return std::ranges::any_of(points,
+                             [](const SweepPoint& point) { return point.state != State::missing; });
+}
+
+bool SweepResult::was_measured() const {
+  return std::ranges::any_of(verdicts, &SweepVerdict::was_measured);
+}
+
+SweepResult find_break_points(const Sweep& sweep, const CellAtValue& cell) {
+  SweepResult result{sweep, {}};
+  for (const SweepMethod& method : sweep.methods) {
+    result.verdicts.push_back(verdict_on(sweep, method, cell));
+  }
+  return result;
+}
+
+std::string to_string(SweepVerdict::Agreement agreement) {
+  switch (agreement) {
+    case Agreement::agrees:
+      return "agrees";
+    case Agreement::differs:
+      return "differs";
+    case Agreement::unknown:
+      return "unknown";
+    case Agreement::nothing_expected:
+      break;
+  }
+  return "";
+}
+
+}  // namespace vislab

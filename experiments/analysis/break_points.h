@@ -1,0 +1,65 @@
+// Where methods break: the figures of a stress sweep, and the first value of its dial at which a
+// method is beyond the limit.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/analysis/summary.h"
+#include "experiments/matrix/sweep.h"
+
+namespace vislab {
+
+/// A method at one value of the dial.
+struct SweepPoint {
+  enum class State { missing, failed, measured };
+
+  State state = State::missing;
+  std::string reason;   // of a failure
+  double figure = 0.0;  // of the sweep's metric or counter; NaN if not measured
+  std::uint64_t false_px = 0, false_jittered = 0;
+};
+
+/// What a sweep says of one of its methods.
+struct SweepVerdict {
+  /// `unknown`: so much of the sweep is missing that it cannot be told.
+  enum class Agreement { nothing_expected, agrees, differs, unknown };
+
+  std::string culler;  // as SweepMethod::culler
+  Guarantee guarantee = Guarantee::conservative;
+  std::vector<SweepPoint> points;  // one for each value of the dial
+  double limit = 0.0;              // the highest figure that is not beyond it; NaN if unknown
+  /// The first value of the dial whose figure is beyond the limit, or at which the method failed.
+  std::optional<std::size_t> break_point;
+  /// Every value up to the break point, or without one every value, was measured or failed.
+  bool is_complete = false;
+  std::optional<std::size_t> worst, least;  // values of the dial with the highest, lowest figure
+  std::optional<SweepExpectation> expectation;
+  Agreement agreement = Agreement::nothing_expected;
+  /// The first value of the dial at which a method that promises to be free of errors lost an
+  /// undisputed pixel, or one that is conservative a jittered sample.
+  std::optional<std::size_t> broken_promise;
+
+  bool was_measured() const;
+  /// A promise is broken or an expectation is not met.
+  bool is_alarming() const { return broken_promise || agreement == Agreement::differs; }
+};
+
+struct SweepResult {
+  Sweep sweep;
+  std::vector<SweepVerdict> verdicts;  // one for each of the sweep's methods, in their order
+
+  bool was_measured() const;
+};
+
+/// The cell of a canonical chain at a value of the dial (by index); null if there is none.
+using CellAtValue = std::function<const CellSummary*(std::size_t value, const std::string& chain)>;
+
+SweepResult find_break_points(const Sweep& sweep, const CellAtValue& cell);
+
+/// "agrees", "differs", "unknown", or "" where nothing is expected.
+std::string to_string(SweepVerdict::Agreement agreement);
+
+}  // namespace vislab

@@ -1,0 +1,105 @@
+#include "experiments/analysis/published.h"
+
+#include <algorithm>
+
+#include "experiments/matrix/toml_keys.h"
+
+namespace vislab {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace toml_keys;
+
+std::string text_of(const toml::table& table, std::string_view key, const std::string& file) {
+  const auto text = value_of<std::string>(table, key, "a text", file);
+  if (!text) throw InputError(place(file, table) + ": " + std::string(key) + " is missing");
+  return *text;
+}
+
+double frames_a_second(const toml::table& table, std::string_view key, const std::string& file) {
+  const auto value = value_of<double>(table, key, "a number", file);
+  if (!value || !(*value > 0.0)) {
+    throw InputError(place(file, table) + ": " + std::string(key) +
+                     " must be a number of frames a second above 0");
+  }
+  return *value;
+}
+
+PublishedRow read_row(const toml::table& table, const Registry& registry, const std::string& file) {
+  refuse_unknown_keys(
+      table, {"what", "table", "without_fps", "with_fps", "scene", "path", "culler", "against"},
+      "[[row]]", file);
+  PublishedRow row;
+  row.what = text_of(table, "what", file);
+  row.table = text_of(table, "table", file);
+  row.without_fps = frames_a_second(table, "without_fps", file);
+  row.with_fps = frames_a_second(table, "with_fps", file);
+  row.scene = text_of(table, "scene", file);
+  row.path = value_of<std::string>(table, "path", "a text", file).value_or("");
+  try {
+    row.culler = registry.canonical(text_of(table, "culler", file));
+    row.against = registry.canonical(
+        value_of<std::string>(table, "against", "a text", file).value_or("none"));
+  } catch (const InputError& error) {
+    throw InputError(place(file, table) + ": " + error.what());
+  }
+  return row;
+}
+
+PublishedFigures read_figures(const fs::path& path, const Registry& registry) {
+  const std::string file = path.string();
+  const toml::table root = parse_file(path);
+  refuse_unknown_keys(root, {"title", "source", "note", "row"}, "published figures", file);
+  PublishedFigures figures;
+  figures.title = text_of(root, "title", file);
+  figures.source = text_of(root, "source", file);
+  figures.note = value_of<std::string>(root, "note", "a text", file).value_or("");
+  const toml::array* const rows = tables(root, "row", file);
+  if (rows == nullptr) throw InputError(file + ": there is no [[row]]");
+  for (const toml::node& row : *rows) {
+    figures.rows.push_back(read_row(*row.as_table(), registry, file));
+  }
+  return figures;
+}
+
+const CellSummary* find_cell(const BlockSummary& block, const std::string& chain) {
+  const auto found = std::ranges::find_if(block.cells, [&](const CellSummary& cell) {
+    return cell.canonical == chain && cell.replicate == 0 &&
+           cell.status == ResultCell::Status::done && cell.against_none.measured();
+  });
+  return found == block.cells.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::vector<PublishedFigures> load_published(const fs::path& folder, const Registry& registry) {
+  std::vector<fs::path> files;
+  std::error_code code;
+  for (const auto& entry : fs::directory_iterator(folder, code)) {
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  std::vector<PublishedFigures> all;
+  for (const fs::path& file : files) all.push_back(read_figures(file, registry));
+  return all;
+}
+
+OwnFigure own_figure(const PublishedRow& row, const std::vector<BlockSummary>& blocks) {
+  for (const BlockSummary& block : blocks) {
+    if (block.scene != row.scene || (!row.path.empty() && block.path != row.path)) continue;
+    const CellSummary* const cell = find_cell(block, row.culler);
+    const CellSummary* const against = find_cell(block, row.against);
+    if (cell == nullptr || against == nullptr) continue;
+    const Estimate& method = cell->against_none;
+    if (against->canonical == "none") {
+      return {&block, cell, {1.0 / method.value, 1.0 / method.high, 1.0 / method.low}};
+    }
+    const Estimate& other = against->against_none;
+    return {&block,
+            cell,
+            {other.value / method.value, other.low / method.high, other.high / method.low}};
+  }
+  return {};
+}
+
+}  // namespace vislab

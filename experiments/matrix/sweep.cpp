@@ -1,0 +1,407 @@
+#include "experiments/matrix/sweep.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <sstream>
+#include <tuple>
+
+#include "common/judge/metrics.h"
+#include "experiments/matrix/resolution.h"
+#include "experiments/matrix/toml_keys.h"
+#include "experiments/results/files.h"
+
+namespace vislab {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace toml_keys;
+
+constexpr std::size_t fewest_values = 8;
+constexpr std::string_view gap = "${dial}";
+
+std::string replaced(std::string text, std::string_view with) {
+  for (std::size_t at = 0; (at = text.find(gap, at)) != std::string::npos; at += with.size()) {
+    text.replace(at, gap.size(), with);
+  }
+  return text;
+}
+
+/// One value of the dial: a whole number stays one, for keys that ask for whole numbers.
+struct DialValue {
+  std::optional<std::int64_t> whole;
+  double number = 0.0;
+  std::string text;
+};
+
+std::string digits_of(double number) {
+  char digits[32];
+  const auto end = std::to_chars(digits, digits + sizeof digits, number).ptr;
+  return {digits, end};
+}
+
+toml::table substituted(const toml::table& table, const DialValue& value);
+toml::array substituted(const toml::array& array, const DialValue& value);
+
+/// Hands `add` the node with the dial's value in all its gaps.
+template <typename Add>
+void substitute(const toml::node& node, const DialValue& value, Add&& add) {
+  if (const toml::table* table = node.as_table()) {
+    add(substituted(*table, value));
+  } else if (const toml::array* array = node.as_array()) {
+    add(substituted(*array, value));
+  } else if (const auto* text = node.as_string(); text != nullptr && text->get() != gap) {
+    add(replaced(text->get(), value.text));
+  } else if (text != nullptr && value.whole) {
+    add(*value.whole);
+  } else if (text != nullptr) {
+    add(value.number);
+  } else if (const auto* whole = node.as_integer()) {
+    add(whole->get());
+  } else if (const auto* number = node.as_floating_point()) {
+    add(number->get());
+  } else if (const auto* flag = node.as_boolean()) {
+    add(flag->get());
+  }
+}
+
+toml::table substituted(const toml::table& table, const DialValue& value) {
+  toml::table result;
+  for (const auto& [key, node] : table) {
+    const std::string name(key.str());
+    substitute(node, value, [&](auto filled) { result.insert(name, std::move(filled)); });
+  }
+  return result;
+}
+
+toml::array substituted(const toml::array& array, const DialValue& value) {
+  toml::array result;
+  for (const toml::node& node : array) {
+    substitute(node, value, [&](auto filled) { result.push_back(std::move(filled)); });
+  }
+  return result;
+}
+
+std::string toml_text(const toml::table& table) {
+  std::ostringstream text;
+  text << toml::toml_formatter(table) << '\n';
+  return text.str();
+}
+
+const toml::table& table_at(const toml::table& root, std::string_view key,
+                            const std::string& file) {
+  const toml::node* node = root.get(key);
+  if (node == nullptr || !node->is_table()) {
+    throw InputError((node == nullptr ? file : place(file, *node)) + ": write [" +
+                     std::string(key) + "], a table" +
+                     (node == nullptr ? ", which is missing" : ""));
+  }
+  return *node->as_table();
+}
+
+std::string required_text(const toml::table& table, std::string_view key, const std::string& what,
+                          const std::string& file) {
+  const auto text = value_of<std::string>(table, key, "a text", file);
+  if (!text) throw InputError(file + ": " + std::string(key) + " of " + what + " is missing");
+  return *text;
+}
+
+std::vector<DialValue> read_dial(const toml::table& table, SweepDial& dial,
+                                 const std::string& file) {
+  refuse_unknown_keys(table, {"name", "unit", "values"}, "[dial]", file);
+  dial.name = required_text(table, "name", "[dial]", file);
+  dial.unit = value_of<std::string>(table, "unit", "a text", file).value_or("");
+  const toml::node* const node = table.get("values");
+  const toml::array* const list = node == nullptr ? nullptr : node->as_array();
+  const auto wrong = [&](const std::string& right) {
+    return InputError((node == nullptr ? file : place(file, *node)) +
+                      ": values of [dial] must be " + right);
+  };
+  if (list == nullptr || list->size() < fewest_values) {
+    throw wrong("a list of at least " + std::to_string(fewest_values) +
+                " numbers from benign to adversarial");
+  }
+  std::vector<DialValue> values;
+  for (const toml::node& entry : *list) {
+    const std::optional<double> number = entry.is_number() ? entry.value<double>() : std::nullopt;
+    if (!number || !std::isfinite(*number)) throw wrong("finite numbers");
+    DialValue value{entry.value_exact<std::int64_t>(), *number, {}};
+    value.text = value.whole ? std::to_string(*value.whole) : digits_of(*number);
+    values.push_back(value);
+    dial.values.push_back(value.number);
+    dial.texts.push_back(value.text);
+  }
+  const bool ascending = dial.values[0] < dial.values[1];
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double step = dial.values[i] - dial.values[i - 1];
+    if (!(ascending ? step > 0.0 : step < 0.0)) {
+      throw wrong("in ascending or in descending order, each once");
+    }
+  }
+  return values;
+}
+
+SweepLimit read_limit(const toml::table& table, const std::string& file) {
+  refuse_unknown_keys(table, {"metric", "counter", "at_most", "at_most_ratio"}, "[limit]", file);
+  SweepLimit limit;
+  const auto metric = value_of<std::string>(table, "metric", "a text", file);
+  const auto counter = value_of<std::string>(table, "counter", "a text", file);
+  if (metric && counter) {
+    throw InputError(place(file, *table.get("counter")) +
+                     ": [limit] takes a metric or a counter, not both");
+  }
+  if (counter) limit = {*counter, true, {}, {}};
+  if (metric) {
+    std::vector<std::string> known;
+    for (const Metric& entry : metrics()) {
+      if (entry.better == Metric::Better::lower) known.emplace_back(entry.name);
+    }
+    if (std::ranges::find(known, *metric) == known.end()) {
+      throw InputError(place(file, *table.get("metric")) + ": " +
+                       unknown_name("metric that is better when lower", *metric, known).what());
+    }
+    limit.metric = *metric;
+  }
+  limit.at_most = value_of<double>(table, "at_most", "a number", file);
+  limit.at_most_ratio = value_of<double>(table, "at_most_ratio", "a number", file);
+  if (limit.at_most && limit.at_most_ratio) {
+    throw InputError(place(file, *table.get("at_most")) +
+                     ": [limit] takes at_most or at_most_ratio, not both");
+  }
+  if (limit.is_counter && !limit.at_most && !limit.at_most_ratio) {
+    throw InputError(place(file, *table.get("counter")) +
+                     ": a counter needs at_most or at_most_ratio");
+  }
+  return limit;
+}
+
+SweepExpectation read_expectation(const toml::table& table, const SweepDial& dial,
+                                  const std::string& file) {
+  refuse_unknown_keys(table, {"culler", "breaks", "source", "because"}, "[[expect]]", file);
+  SweepExpectation expectation;
+  expectation.culler = required_text(table, "culler", "[[expect]]", file);
+  expectation.source = required_text(table, "source", "[[expect]]", file);
+  expectation.because = required_text(table, "because", "[[expect]]", file);
+  const toml::node* const breaks = table.get("breaks");
+  if (breaks != nullptr && breaks->value_exact<std::string>() == "never") return expectation;
+  const toml::array* const range = breaks == nullptr ? nullptr : breaks->as_array();
+  const auto bound = [&](std::size_t i) { return (*range)[i].value<double>(); };
+  if (range == nullptr || range->size() != 2 || !bound(0) || !bound(1)) {
+    throw InputError(
+        place(file, breaks == nullptr ? static_cast<const toml::node&>(table) : *breaks) +
+        ": breaks must be \"never\" or two values of the dial, [first, last]");
+  }
+  expectation.never = false;
+  std::tie(expectation.low, expectation.high) = std::minmax({*bound(0), *bound(1)});
+  if (std::ranges::none_of(dial.values, [&](double value) {
+        return value >= expectation.low && value <= expectation.high;
+      })) {
+    throw InputError(place(file, *breaks) + ": no value of the dial lies in the range of breaks");
+  }
+  return expectation;
+}
+
+/// Reads one sweep file and makes its blocks.
+class SweepReader {
+ public:
+  SweepReader(const fs::path& path, const fs::path& results, const Registry& registry)
+      : path_(path), file_(path.string()), root_(parse_file(path)), registry_(registry) {
+    sweep_.name = path.stem().string();
+    folder_ = results / "stress" / sweep_.name;
+  }
+
+  Sweep read() {
+    std::vector<std::string> known{"description", "failure", "cullers", "resolution", "frames",
+                                   "dial",        "scene",   "path",    "limit",      "expect"};
+    known.insert(known.end(), pass_keys.begin(), pass_keys.end());
+    refuse_unknown_keys(root_, known, "a sweep", file_);
+    sweep_.description = required_text(root_, "description", "a sweep", file_);
+    sweep_.failure = required_text(root_, "failure", "a sweep", file_);
+    values_ = read_dial(table_at(root_, "dial", file_), sweep_.dial, file_);
+    if (root_.contains("limit")) sweep_.limit = read_limit(table_at(root_, "limit", file_), file_);
+    read_block_settings();
+    read_methods();
+    read_expectations();
+    make_blocks();
+    return std::move(sweep_);
+  }
+
+ private:
+  void read_block_settings() {
+    PassSettings pass;
+    read_pass_settings(root_, pass, file_);
+    settings_.rounds = pass.rounds;
+    settings_.seed = pass.seed;
+    settings_.threads = pass.threads;
+    settings_.device = pass.draw;
+    settings_.timeout_s = pass.timeout_s;
+    if (const auto* node = root_.get("frames")) {
+      settings_.frames = whole_number(*node, "frames", 0, 100000, file_);
+    }
+    if (auto text = value_of<std::string>(root_, "resolution", "a text", file_)) {
+      try {
+        settings_.viewport = parse_resolution(*text);
+      } catch (const InputError& error) {
+        throw InputError(place(file_, *root_.get("resolution")) + ": " + error.what());
+      }
+    }
+  }
+
+  void read_methods() {
+    const toml::node* const list = root_.get("cullers");
+    if (list == nullptr) throw InputError(file_ + ": cullers, a list of texts, is missing");
+    for (const std::string& text : text_list(*list, "cullers", file_)) {
+      SweepMethod method{replaced(text, "<" + sweep_.dial.name + ">"), {}, {}};
+      for (const DialValue& value : values_) {
+        const std::string chain = replaced(text, value.text);
+        try {
+          registry_.make(chain);
+          method.chains.push_back(registry_.canonical(chain));
+        } catch (const InputError& error) {
+          throw InputError(place(file_, *list) + ": " + error.what());
+        }
+      }
+      sweep_.methods.push_back(std::move(method));
+      written_.push_back(text);
+    }
+  }
+
+  /// The first expectation whose pattern fits a method counts.
+  void read_expectations() {
+    const toml::array* const list = tables(root_, "expect", file_);
+    if (list == nullptr) return;
+    for (const toml::node& node : *list) {
+      const SweepExpectation expectation = read_expectation(*node.as_table(), sweep_.dial, file_);
+      bool fits = false;
+      for (std::size_t i = 0; i < sweep_.methods.size(); ++i) {
+        if (!matches(expectation.culler, written_[i])) continue;
+        fits = true;
+        if (!sweep_.methods[i].expectation) sweep_.methods[i].expectation = expectation;
+      }
+      if (!fits) {
+        throw InputError(
+            place(file_, node) + ": " +
+            unknown_name("pattern for an entry of cullers", expectation.culler, written_).what());
+      }
+    }
+  }
+
+  /// The table's file at each value of the dial; one for all if the dial does not stand in it.
+  std::vector<std::string> files_of(const toml::table& table, const std::string& suffix) {
+    std::vector<std::string> texts;
+    for (const DialValue& value : values_) texts.push_back(toml_text(substituted(table, value)));
+    const bool same = std::ranges::count(texts, texts.front()) == std::ssize(texts);
+    std::vector<std::string> files;
+    for (std::size_t i = 0; i < texts.size(); ++i) {
+      const std::string value = same ? "" : "-" + values_[i].text;
+      files.push_back((folder_ / (sweep_.name + value + suffix + ".toml")).string());
+      if (i == 0 || !same) sweep_.files.push_back({files.back(), texts[i]});
+    }
+    return files;
+  }
+
+  void make_blocks() {
+    toml::table scene = table_at(root_, "scene", file_);
+    scene.insert("description", sweep_.description);
+    std::map<std::pair<std::string, std::string>, std::size_t> known;
+    std::vector<std::vector<std::string>> chains;
+    const std::vector<std::string> scenes = files_of(scene, "");
+    std::vector<std::string> paths(values_.size());
+    if (root_.contains("path")) paths = files_of(table_at(root_, "path", file_), "-path");
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      Block block = settings_;
+      block.scene = scenes[i];
+      block.path = paths[i];
+      const auto [found, is_new] =
+          known.try_emplace({block.scene, block.path}, sweep_.blocks.size());
+      if (is_new) {
+        block.label = sweep_.name + ": " + sweep_.dial.setting(i);
+        sweep_.blocks.push_back(block);
+        chains.emplace_back();
+      } else {
+        sweep_.blocks[found->second].label =
+            sweep_.name + ": several values of " + sweep_.dial.name;
+      }
+      sweep_.block_of_value.push_back(found->second);
+      for (const SweepMethod& method : sweep_.methods) {
+        chains[found->second].push_back(method.chains[i]);
+      }
+    }
+    for (std::size_t i = 0; i < chains.size(); ++i) {
+      sweep_.blocks[i].cullers = with_anchors(chains[i], registry_);
+    }
+  }
+
+  fs::path path_;
+  std::string file_;
+  toml::table root_;
+  const Registry& registry_;
+  fs::path folder_;
+  std::vector<DialValue> values_;
+  std::vector<std::string> written_;  // the cullers as they stand in the file
+  Block settings_;
+  Sweep sweep_;
+};
+
+/// "F9" before "F10".
+auto failure_order(const Sweep& sweep) {
+  std::string number;
+  for (const char c : sweep.failure) {
+    if (c >= '0' && c <= '9') number += c;
+  }
+  return std::tuple(number.size(), number, sweep.failure, sweep.name);
+}
+
+}  // namespace
+
+std::string SweepDial::setting(std::size_t value) const {
+  return name + " = " + texts[value] + (unit.empty() ? "" : " " + unit);
+}
+
+Sweep load_sweep(const std::string& name_or_file, const fs::path& folder, const fs::path& results,
+                 const Registry& registry) {
+  const fs::path named = folder / (name_or_file + ".toml");
+  if (fs::is_regular_file(named)) return SweepReader(named, results, registry).read();
+  if (fs::is_regular_file(name_or_file)) return SweepReader(name_or_file, results, registry).read();
+  std::vector<std::string> known;
+  for (const auto& [name, text] : list_sweeps(folder)) known.push_back(name);
+  throw unknown_name("sweep (or file)", name_or_file, known);
+}
+
+std::vector<Sweep> load_sweeps(const fs::path& folder, const fs::path& results,
+                               const Registry& registry) {
+  std::vector<Sweep> sweeps;
+  for (const auto& [name, text] : list_sweeps(folder)) {
+    sweeps.push_back(load_sweep(name, folder, results, registry));
+  }
+  std::ranges::stable_sort(sweeps, {}, failure_order);
+  return sweeps;
+}
+
+std::vector<std::pair<std::string, std::string>> list_sweeps(const fs::path& folder) {
+  return list_matrices(folder);  // both are TOML files with a description
+}
+
+bool is_sweep_file(const fs::path& file) {
+  try {
+    return toml::parse_file(file.string()).contains("dial");
+  } catch (const toml::parse_error&) {
+    return false;
+  }
+}
+
+void write_sweep_files(const Sweep& sweep) {
+  for (const SweepFile& file : sweep.files) {
+    std::error_code code;
+    fs::create_directories(file.file.parent_path(), code);
+    if (code) {
+      throw InputError(file.file.parent_path().string() + " cannot be made: " + code.message() +
+                       "; name another folder with --results");
+    }
+    if (fs::exists(file.file) && read_file(file.file) == file.text) continue;
+    write_file(file.file, file.text);
+  }
+}
+
+}  // namespace vislab

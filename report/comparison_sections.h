@@ -1,0 +1,24 @@
+// The report's sections that put methods beside each other across scenes: which one to use, what
+// the wrong ones do, and what the sources published.
+#pragma once
+
+#include <vector>
+
+#include "experiments/analysis/published.h"
+#include "report/report.h"
+#include "report/template.h"
+
+namespace vislab {
+
+/// One entry for each family with enough methods, for templates/guide.md.
+std::vector<Fields> guide_fields(const std::vector<BlockSummary>& blocks);
+
+/// One entry for each chain that is declared erroneous and was judged on any block, stress sweeps
+/// included, for templates/controls.md.
+std::vector<Fields> control_fields(const ReportInput& input);
+
+/// One entry for each source of which any figure has its own beside it, for templates/published.md.
+std::vector<Fields> published_fields(const std::vector<PublishedFigures>& published,
+                                     const std::vector<BlockSummary>& blocks);
+
+}  // namespace vislab

@@ -1,0 +1,43 @@
+#include "report/comparison_sections.h"
+#include "report/format.h"
+
+namespace vislab {
+namespace {
+
+Fields row_fields(const PublishedRow& row, const OwnFigure& own) {
+  Fields fields;
+  fields.values["what"] = markdown_text(row.what);
+  fields.values["table"] = markdown_text(row.table);
+  fields.values["fps"] = format_number(row.without_fps) + " → " + format_number(row.with_fps);
+  fields.values["published"] = format_number(row.ratio());
+  fields.values["own"] = own.cell == nullptr ? "not run" : format_estimate(own.ratio);
+  fields.values["scene"] = markdown_text(row.scene + (row.path.empty() ? "" : ", " + row.path));
+  fields.values["method"] =
+      own.cell == nullptr ? markdown_code(row.culler) : markdown_code(own.cell->culler);
+  fields.values["against"] = markdown_code(row.against);
+  return fields;
+}
+
+}  // namespace
+
+std::vector<Fields> published_fields(const std::vector<PublishedFigures>& published,
+                                     const std::vector<BlockSummary>& blocks) {
+  std::vector<Fields> entries;
+  for (const PublishedFigures& figures : published) {
+    Fields entry;
+    bool any = false;
+    for (const PublishedRow& row : figures.rows) {
+      const OwnFigure own = own_figure(row, blocks);
+      any |= own.cell != nullptr;
+      entry.lists["rows"].push_back(row_fields(row, own));
+    }
+    if (!any) continue;
+    entry.values["title"] = markdown_text(figures.title);
+    entry.values["source"] = markdown_text(figures.source);
+    entry.values["note"] = markdown_text(figures.note);
+    entries.push_back(std::move(entry));
+  }
+  return entries;
+}
+
+}  // namespace vislab

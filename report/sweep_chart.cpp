@@ -1,0 +1,203 @@
+#include "report/sweep_chart.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "report/chart_parts.h"
+
+namespace vislab {
+namespace {
+
+using namespace chart;
+
+constexpr double panel_left = 92.0, panel_width = 568.0, panel_height = 150.0;
+constexpr double y_title_left = 10.0;
+constexpr double axis_height = 50.0;  // tick labels and title below the panel
+constexpr double top_margin = 10.0;
+/// Lines that lie on each other are told apart by moving each a little along the dial.
+constexpr double sidestep = 0.024;  // of the distance between two values
+constexpr const char* limit_style = "dt (2,4) lw 1.2 lc rgb '#777777'";
+constexpr const char* zero_band_colour = "#EEF2F6";
+constexpr int ring = 6;
+
+class SweepChart {
+ public:
+  SweepChart(const SweepResult& result, std::ostream& out) : result_(result), out_(out) {
+    std::vector<double> figures;
+    for (const SweepVerdict& verdict : result.verdicts) {
+      texts_.push_back(verdict.culler);
+      for (const SweepPoint& point : verdict.points) {
+        if (!std::isnan(point.figure)) figures.push_back(point.figure);
+      }
+    }
+    texts_.emplace_back("ring: break point");
+    common_limit_ = common_limit();
+    if (common_limit_ > 0.0) {
+      figures.push_back(common_limit_);
+      texts_.emplace_back("limit");
+    }
+    const double most = figures.empty() ? 0.0 : std::ranges::max(figures);
+    const bool has_zero = std::ranges::count(figures, 0.0) > 0;
+    axis_ = has_zero && most > 0.0 ? logarithmic_axis(figures, most, "0")
+                                   : positive_axis(most > 0.0 ? figures : std::vector{1.0});
+    legend_ = legend_for(texts_);
+  }
+
+  void write(const std::filesystem::path& file) {
+    const double bottom = legend_.height() + axis_height;
+    height_ = bottom + panel_height + top_margin;
+    out_ << "set terminal svg size " << chart_width << ',' << height_
+         << " noenhanced font 'Noto Sans,11' background '#FFFFFF'\nset output "
+         << quoted(file.string()) << "\nset multiplot\n";
+    write_panel(bottom);
+    write_legend();
+    out_ << "unset multiplot\nunset output\n";
+  }
+
+ private:
+  /// The limit, if it is the same for all methods; else 0.
+  double common_limit() const {
+    double limit = 0.0;
+    for (const SweepVerdict& verdict : result_.verdicts) {
+      if (!verdict.was_measured()) continue;
+      if (std::isnan(verdict.limit) || (limit > 0.0 && verdict.limit != limit)) return 0.0;
+      limit = verdict.limit;
+    }
+    return limit;
+  }
+
+  std::string y_title() const {
+    const SweepLimit& limit = result_.sweep.limit;
+    return limit.is_counter ? limit.metric + " a frame" : limit.metric;
+  }
+
+  void write_panel(double bottom) {
+    const SweepDial& dial = result_.sweep.dial;
+    const auto values = static_cast<double>(dial.values.size());
+    out_ << "unset label\nunset arrow\nunset object\nset border 3 lc rgb '#444444'\n"
+         << "set tics nomirror out scale 0.5\nset grid xtics ytics lt 1 lw 0.5 lc rgb '#E4E4E4'\n"
+         << "unset title\nunset ylabel\nset xlabel "
+         << quoted(dial.name + (dial.unit.empty() ? "" : " (" + dial.unit + ")"))
+         << " offset 0,0.5\nset label " << quoted(y_title()) << " at screen "
+         << y_title_left / chart_width << ',' << (bottom + 0.5 * panel_height) / height_
+         << " center rotate by 90\n";
+    ChartAxis x;
+    x.low = -0.5;
+    x.high = values - 0.5;
+    for (std::size_t i = 0; i < dial.texts.size(); ++i) {
+      x.ticks.emplace_back(static_cast<double>(i), dial.texts[i]);
+    }
+    set_axis(out_, 'x', x);
+    set_axis(out_, 'y', axis_);
+    set_margins(out_, panel_left, bottom, panel_width, panel_height, height_);
+    if (axis_.logarithmic && axis_.zero_band_top > 0.0) {
+      out_ << "set object rectangle from graph 0, graph 0 to graph 1, first " << axis_.zero_band_top
+           << " fc rgb '" << zero_band_colour << "' fs solid noborder behind\n";
+    }
+    if (common_limit_ > 0.0) {
+      out_ << "set arrow from graph 0, first " << axis_.position(common_limit_)
+           << " to graph 1, first " << axis_.position(common_limit_) << " nohead " << limit_style
+           << " back\n";
+    }
+    write_points();
+    plot(" using 1:2 with linespoints");
+  }
+
+  /// One data block a method; values without a figure interrupt the line.
+  void write_points() {
+    const auto methods = static_cast<double>(result_.verdicts.size());
+    for (std::size_t m = 0; m < result_.verdicts.size(); ++m) {
+      const SweepVerdict& verdict = result_.verdicts[m];
+      const double step = sidestep * (static_cast<double>(m) - 0.5 * (methods - 1.0));
+      const auto row = [&](std::size_t i, double figure) {
+        out_ << static_cast<double>(i) + step << ' ';
+        if (std::isnan(figure)) {
+          out_ << "NaN\n";
+        } else {
+          out_ << axis_.position(figure) << '\n';
+        }
+      };
+      out_ << "$method" << m << " << END\n";
+      for (std::size_t i = 0; i < verdict.points.size(); ++i) row(i, verdict.points[i].figure);
+      out_ << "END\n";
+      if (!has_ring(verdict)) continue;
+      out_ << "$break" << m << " << END\n";
+      row(*verdict.break_point, verdict.points[*verdict.break_point].figure);
+      out_ << "END\n";
+    }
+  }
+
+  static bool has_ring(const SweepVerdict& verdict) {
+    return verdict.break_point && !std::isnan(verdict.points[*verdict.break_point].figure);
+  }
+
+  void plot(const std::string& how) {
+    out_ << "plot";
+    for (std::size_t m = 0; m < result_.verdicts.size(); ++m) {
+      const Look look = method_look(m);
+      out_ << (m == 0 ? " " : ", \\\n  ") << "$method" << m << how << " notitle pt " << look.shape
+           << " ps 0.8 lw 1.3 lc rgb '" << look.colour << "'";
+      if (!has_ring(result_.verdicts[m])) continue;
+      out_ << ", \\\n  $break" << m << " using 1:2 with points notitle pt " << ring
+           << " ps 1.9 lw 1.3 lc rgb '#000000'";
+    }
+    out_ << '\n';
+  }
+
+  void write_legend() {
+    out_ << "unset label\nunset arrow\nunset object\nunset xlabel\nunset border\nunset tics\n"
+         << "unset grid\nunset logscale\nset xrange [0:" << chart_width
+         << "]\nset yrange [0:" << legend_.height() << "]\n";
+    set_margins(out_, 0.0, 0.0, chart_width, legend_.height(), height_);
+    out_ << "$legend << END\n";
+    for (std::size_t i = 0; i < texts_.size(); ++i) {
+      out_ << legend_.left(i) + 9.0 << ' ' << legend_.middle(i) << '\n';
+    }
+    out_ << "END\n";
+    for (std::size_t i = 0; i < texts_.size(); ++i) {
+      out_ << "set label " << quoted(texts_[i]) << " at first "
+           << legend_.left(i) + legend_text_left << ',' << legend_.middle(i)
+           << " left font ',10.5'\n";
+    }
+    const std::size_t methods = result_.verdicts.size();
+    if (texts_.size() > methods + 1) {
+      out_ << "set arrow from first " << legend_.left(methods + 1) << ','
+           << legend_.middle(methods + 1) << " to first " << legend_.left(methods + 1) + 18.0 << ','
+           << legend_.middle(methods + 1) << " nohead " << limit_style << '\n';
+    }
+    out_ << "plot";
+    for (std::size_t i = 0; i <= methods; ++i) {
+      const Look look = i < methods ? method_look(i) : Look{"#000000", ring};
+      out_ << (i == 0 ? " " : ", \\\n  ") << "$legend every ::" << i << "::" << i
+           << " using 1:2 with points notitle pt " << look.shape << " ps "
+           << (i < methods ? 0.8 : 1.5) << " lw 1.3 lc rgb '" << look.colour << "'";
+    }
+    out_ << '\n';
+  }
+
+  const SweepResult& result_;
+  std::ostream& out_;
+  std::vector<std::string> texts_;  // of the legend: methods, ring, limit
+  double common_limit_ = 0.0;
+  ChartAxis axis_;
+  Legend legend_;
+  double height_ = 0.0;
+};
+
+}  // namespace
+
+bool has_sweep_chart(const SweepResult& result) {
+  return std::ranges::any_of(result.verdicts,
+                             [](const SweepVerdict& verdict) { return verdict.worst.has_value(); });
+}
+
+std::string sweep_chart_script(const SweepResult& result, const std::filesystem::path& file) {
+  std::ostringstream script;
+  script.precision(12);
+  script << "reset\n";
+  SweepChart(result, script).write(file);
+  return script.str();
+}
+
+}  // namespace vislab

@@ -1,0 +1,106 @@
+#include "report/sweep_section.h"
+
+#include "report/format.h"
+#include "report/sweep_chart.h"
+
+namespace vislab {
+namespace {
+
+std::string in_unit(const SweepDial& dial, std::size_t value) {
+  return markdown_text(dial.texts[value] + (dial.unit.empty() ? "" : " " + dial.unit));
+}
+
+/// "at 4 m", "none from 0.5 to 64 m", or why it cannot be told.
+std::string break_text(const Sweep& sweep, const SweepVerdict& verdict) {
+  const SweepDial& dial = sweep.dial;
+  if (verdict.break_point) {
+    const SweepPoint& point = verdict.points[*verdict.break_point];
+    const std::string at = "**at " + in_unit(dial, *verdict.break_point) + "**";
+    if (point.state != SweepPoint::State::failed) return at;
+    return at + ", where it failed: " + markdown_text(point.reason);
+  }
+  if (!verdict.was_measured()) return "not run";
+  if (!verdict.is_complete) return "not all values were measured";
+  return "none within " + in_unit(dial, 0) + " to " + in_unit(dial, dial.texts.size() - 1);
+}
+
+/// "12 at 4 m"
+std::string figure_text(const Sweep& sweep, const SweepVerdict& verdict,
+                        const std::optional<std::size_t>& value) {
+  if (!value) return "–";
+  return format_number(verdict.points[*value].figure) + " at " + in_unit(sweep.dial, *value);
+}
+
+std::string expectation_text(const SweepVerdict& verdict) {
+  if (!verdict.expectation) return "–";
+  const SweepExpectation& expected = *verdict.expectation;
+  const std::string range = expected.never ? "never breaks"
+                                           : "breaks from " + format_number(expected.low) + " to " +
+                                                 format_number(expected.high);
+  return range + ": " + markdown_text(expected.because) + " (" + markdown_text(expected.source) +
+         ")";
+}
+
+std::string agreement_text(const SweepVerdict& verdict) {
+  std::string text = to_string(verdict.agreement);
+  if (verdict.agreement == SweepVerdict::Agreement::differs) text = "**" + text + "**";
+  if (verdict.broken_promise) {
+    text += std::string(text.empty() ? "" : "; ") + "**breaks its promise**";
+  }
+  return text.empty() ? "–" : text;
+}
+
+std::string limit_text(const SweepLimit& limit) {
+  const std::string metric = markdown_code(limit.metric) + (limit.is_counter ? " a frame" : "");
+  if (limit.at_most) return metric + " of at most " + format_number(*limit.at_most);
+  if (limit.at_most_ratio) {
+    return metric + " of at most " + format_number(*limit.at_most_ratio) +
+           " times that at the first value";
+  }
+  if (limit.metric == "false_px") {
+    return metric + " of 0, for approximate methods 1 % of the pixels";
+  }
+  return metric + ", by its usual limit";
+}
+
+Fields method_row(const Sweep& sweep, const SweepVerdict& verdict) {
+  Fields row;
+  row.values["method"] = markdown_code(verdict.culler);
+  row.values["guarantee"] =
+      verdict.was_measured() ? markdown_text(to_string(verdict.guarantee)) : "–";
+  row.values["breaks"] = break_text(sweep, verdict);
+  row.values["worst"] = figure_text(sweep, verdict, verdict.worst);
+  row.values["least"] = figure_text(sweep, verdict, verdict.least);
+  row.values["expected"] = expectation_text(verdict);
+  row.values["agreement"] = agreement_text(verdict);
+  return row;
+}
+
+}  // namespace
+
+std::string sweep_chart_file_name(std::size_t sweep) {
+  return "sweep-" + std::to_string(sweep + 1) + ".svg";
+}
+
+std::vector<Fields> sweep_fields(const std::vector<SweepResult>& sweeps) {
+  std::vector<Fields> entries;
+  for (std::size_t i = 0; i < sweeps.size(); ++i) {
+    const SweepResult& result = sweeps[i];
+    if (!result.was_measured()) continue;
+    Fields entry;
+    entry.values["failure"] = markdown_text(result.sweep.failure);
+    entry.values["sweep"] = markdown_text(result.sweep.name);
+    entry.values["description"] = markdown_text(result.sweep.description);
+    entry.values["dial"] = markdown_text(result.sweep.dial.name);
+    entry.values["limit"] = limit_text(result.sweep.limit);
+    entry.values["file"] = sweep_chart_file_name(i);
+    entry.flag("chart", has_sweep_chart(result));
+    for (const SweepVerdict& verdict : result.verdicts) {
+      entry.lists["rows"].push_back(method_row(result.sweep, verdict));
+    }
+    entries.push_back(std::move(entry));
+  }
+  return entries;
+}
+
+}  // namespace vislab

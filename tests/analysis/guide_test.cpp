@@ -1,0 +1,110 @@
+#include "experiments/analysis/guide.h"
+
+#include <gtest/gtest.h>
+
+#include "experiments/analysis/published.h"
+
+namespace vislab {
+namespace {
+
+CellSummary method(const std::string& name, double cull_us, double frame_ms) {
+  CellSummary cell;
+  cell.culler = cell.canonical = name;
+  cell.judged = cell.drawn = true;
+  cell.cull_us.median = {cull_us, cull_us, cull_us};
+  cell.update_us.median = {1.0, 1.0, 1.0};
+  cell.frame_ms.median = {frame_ms, frame_ms, frame_ms};
+  cell.against_none = {frame_ms / 10.0, 0.9 * frame_ms / 10.0, 1.1 * frame_ms / 10.0};
+  return cell;
+}
+
+BlockSummary block_with(const std::string& scene, std::vector<CellSummary> cells) {
+  BlockSummary block;
+  block.scene = scene;
+  block.path = "way";
+  block.objects = 100;
+  block.machines = {"one"};
+  block.cells = std::move(cells);
+  return block;
+}
+
+TEST(Guide, NamesTheSoonestRightMethodAndTheNext) {
+  const auto guides =
+      make_guides({block_with("s", {method("frustum.a", 9.0, 2.0), method("frustum.b", 4.0, 3.0),
+                                    method("frustum.c", 19.0, 4.0)})});
+  ASSERT_EQ(guides.size(), 1U);
+  EXPECT_EQ(guides[0].family, "frustum");
+  ASSERT_EQ(guides[0].rows.size(), 1U);
+  EXPECT_EQ(guides[0].rows[0].best->culler, "frustum.b");
+  EXPECT_EQ(guides[0].rows[0].runner_up->culler, "frustum.a");
+  EXPECT_EQ(guides[0].rows[0].best_frame->culler, "frustum.a");
+  ASSERT_EQ(guides[0].advice.size(), 1U);
+  EXPECT_EQ(guides[0].advice[0].choice.culler, "frustum.b");
+}
+
+TEST(Guide, MethodsWithErrorsChainsAnchorsAndNegativeControlsDoNotCount) {
+  CellSummary wrong = method("frustum.wrong", 1.0, 1.0);
+  wrong.guarantee = Guarantee::erroneous;
+  CellSummary erring = method("frustum.erring", 1.0, 1.0);
+  erring.false_px = 1;
+  CellSummary failed = method("frustum.failed", 1.0, 1.0);
+  failed.status = ResultCell::Status::failed;
+  CellSummary anchor = method("oracle", 1.0, 1.0);
+  anchor.anchor = true;
+  std::vector<CellSummary> cells{wrong,
+                                 erring,
+                                 failed,
+                                 anchor,
+                                 method("frustum.a > backface.b", 1.0, 1.0),
+                                 method("frustum.a", 5.0, 1.0),
+                                 method("frustum.b", 6.0, 1.0)};
+  EXPECT_TRUE(make_guides({block_with("s", cells)}).empty()) << "only two are left";
+  cells.push_back(method("frustum.c", 7.0, 1.0));
+  ASSERT_EQ(make_guides({block_with("s", cells)}).size(), 1U);
+  EXPECT_EQ(make_guides({block_with("s", cells)})[0].rows[0].best->culler, "frustum.a");
+}
+
+TEST(Guide, AdviceIsTheLeastMeanRatioAndTellsMovingScenesApart) {
+  // a is best where things stand still, b where they move; c is never far off.
+  const auto still =
+      block_with("still", {method("frustum.a", 9.0, 1.0), method("frustum.b", 999.0, 1.0),
+                           method("frustum.c", 19.0, 1.0)});
+  auto moving =
+      block_with("moving", {method("frustum.a", 999.0, 1.0), method("frustum.b", 9.0, 1.0),
+                            method("frustum.c", 19.0, 1.0)});
+  moving.moving_objects = 50.0;
+  const auto guides = make_guides({still, moving});
+  ASSERT_EQ(guides.at(0).advice.size(), 3U);
+  EXPECT_EQ(guides[0].advice[0].choice.culler, "frustum.c");
+  EXPECT_EQ(guides[0].advice[0].choice.wins, 0);
+  EXPECT_NEAR(guides[0].advice[0].choice.mean_ratio, 2.0, 1e-12);
+  EXPECT_EQ(guides[0].advice[1].choice.culler, "frustum.a");
+  EXPECT_EQ(guides[0].advice[2].choice.culler, "frustum.b");
+}
+
+TEST(Guide, NothingMeasuredGivesNoGuide) { EXPECT_TRUE(make_guides({}).empty()); }
+
+TEST(Published, OwnRatiosAreThoseOfTheRowsSceneAndMethods) {
+  const std::vector<BlockSummary> blocks{
+      block_with("s", {method("frustum.a", 9.0, 5.0), method("frustum.b", 9.0, 2.0)})};
+  std::vector<BlockSummary> with_none = blocks;
+  CellSummary none = method("none", 1.0, 10.0);
+  none.against_none = {1.0, 1.0, 1.0};
+  with_none[0].cells.push_back(none);
+  PublishedRow row{"w", "t", 10.0, 20.0, "s", "way", "frustum.a", "none"};
+  EXPECT_DOUBLE_EQ(row.ratio(), 2.0);
+  EXPECT_DOUBLE_EQ(own_figure(row, with_none).ratio.value, 2.0);
+  EXPECT_LT(own_figure(row, with_none).ratio.low, 2.0);
+  row.against = "frustum.b";
+  const OwnFigure against = own_figure(row, with_none);
+  EXPECT_DOUBLE_EQ(against.ratio.value, 0.4);
+  EXPECT_LT(against.ratio.low, 0.4);
+  EXPECT_GT(against.ratio.high, 0.4);
+  row.path = "";
+  EXPECT_NE(own_figure(row, with_none).cell, nullptr) << "any path";
+  row.path = "another way";
+  EXPECT_EQ(own_figure(row, with_none).cell, nullptr);
+}
+
+}  // namespace
+}  // namespace vislab

@@ -1,0 +1,168 @@
+#include "experiments/matrix/sweep.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "algorithms/all_cullers.h"
+#include "common/scene/error.h"
+#include "experiments/results/files.h"
+#include "tests/experiments/temporary_folder.h"
+
+namespace vislab {
+namespace {
+
+const std::string dial =
+    "[dial]\nname = \"edge\"\nunit = \"m\"\nvalues = [0.5, 1, 2, 4, 8, 16, 32, 64]\n";
+const std::string head =
+    "description = \"Boxes grow\"\nfailure = \"F1\"\ncullers = [\"frustum.flat\"]\nframes = 3\n";
+const std::string scene =
+    "[scene.generator]\nkind = \"box_field\"\ncount = 20\nmax_half_size_m = \"${dial}\"\n";
+
+class SweepFileTest : public ::testing::Test {
+ protected:
+  SweepFileTest() { register_all_cullers(registry_); }
+  Sweep load(const std::string& text) {
+    return load_sweep(folder_.write("test.toml", text), folder_.path(), folder_.path() / "results",
+                      registry_);
+  }
+  std::string refusal(const std::string& text) {
+    try {
+      load(text);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  Registry registry_;
+  TemporaryFolder folder_;
+};
+
+std::size_t count_of(const Block& block, const std::string& chain) {
+  return static_cast<std::size_t>(std::ranges::count(block.cullers, chain, &BlockCuller::chain));
+}
+
+TEST_F(SweepFileTest, EveryValueOfTheDialIsABlockWithASceneOfItsOwn) {
+  const Sweep sweep = load(head + dial + scene + "[path]\nkind = \"turn\"\neye = [0, 0, 0]\n");
+  ASSERT_EQ(sweep.blocks.size(), 8U);
+  EXPECT_EQ(sweep.block_of_value, (std::vector<std::size_t>{0, 1, 2, 3, 4, 5, 6, 7}));
+  EXPECT_EQ(sweep.blocks[3].title(), "test: edge = 4 m");
+  EXPECT_EQ(sweep.blocks[3].frames, 3);
+  EXPECT_NE(sweep.blocks[0].scene, sweep.blocks[1].scene);
+  EXPECT_EQ(sweep.blocks[0].path, sweep.blocks[1].path) << "the path does not depend on the dial";
+  EXPECT_EQ(sweep.files.size(), 9U);
+  EXPECT_TRUE(std::filesystem::path(sweep.blocks[0].scene).filename() == "test-0.5.toml");
+  EXPECT_EQ(count_of(sweep.blocks[0], "none"), 2U) << "with the control";
+}
+
+TEST_F(SweepFileTest, AGapAloneInItsQuotesBecomesTheNumberAsItWasWritten) {
+  const Sweep sweep = load(head + dial + scene);
+  const auto text_of = [&](std::size_t value) {
+    const auto file = std::ranges::find(
+        sweep.files, std::filesystem::path(sweep.blocks[value].scene), &SweepFile::file);
+    return file->text;
+  };
+  EXPECT_NE(text_of(0).find("max_half_size_m = 0.5"), std::string::npos) << text_of(0);
+  EXPECT_NE(text_of(1).find("max_half_size_m = 1\n"), std::string::npos) << text_of(1);
+  EXPECT_NE(text_of(0).find("kind = 'box_field'"), std::string::npos) << text_of(0);
+  EXPECT_NE(text_of(0).find("description = 'Boxes grow'"), std::string::npos) << text_of(0);
+}
+
+TEST_F(SweepFileTest, AGapInACullerIsFilledAtEveryValueAndOneSceneServesAll) {
+  const Sweep sweep = load(
+      "description = \"d\"\nfailure = \"F17\"\n"
+      "cullers = [\"frustum.flat\", \"frustum.octree[depth=${dial}]\"]\n"
+      "[dial]\nname = \"depth\"\nvalues = [1, 2, 3, 4, 5, 6, 7, 8]\n"
+      "[scene.generator]\nkind = \"box_field\"\ncount = 20\n");
+  ASSERT_EQ(sweep.blocks.size(), 1U);
+  EXPECT_EQ(sweep.files.size(), 1U);
+  EXPECT_EQ(sweep.methods[1].culler, "frustum.octree[depth=<depth>]");
+  EXPECT_EQ(sweep.methods[1].chains[4], registry_.canonical("frustum.octree[depth=5]"));
+  EXPECT_EQ(count_of(sweep.blocks[0], registry_.canonical("frustum.octree[depth=5]")), 1U);
+  EXPECT_EQ(count_of(sweep.blocks[0], registry_.canonical("frustum.flat")), 1U);
+  EXPECT_EQ(sweep.blocks[0].title(), "test: several values of depth");
+}
+
+TEST_F(SweepFileTest, FilesAreWrittenOnceAndAlikeEveryTime) {
+  const Sweep sweep = load(head + dial + scene);
+  write_sweep_files(sweep);
+  const std::filesystem::path file = sweep.files.front().file;
+  EXPECT_EQ(read_file(file), sweep.files.front().text);
+  const auto before = std::filesystem::last_write_time(file);
+  write_sweep_files(load(head + dial + scene));
+  EXPECT_EQ(std::filesystem::last_write_time(file), before);
+  EXPECT_EQ(file.parent_path(), folder_.path() / "results" / "stress" / "test");
+}
+
+TEST_F(SweepFileTest, TheFirstExpectationThatFitsACullerCounts) {
+  const Sweep sweep = load(
+      "description = \"d\"\nfailure = \"F1\"\n"
+      "cullers = [\"frustum.flat\", \"frustum.flat[test=sphere]\", \"backface.polygon\"]\n" +
+      dial + scene +
+      "[[expect]]\nculler = \"frustum.flat\"\nbreaks = \"never\"\nsource = \"s\"\nbecause = \"b\"\n"
+      "[[expect]]\nculler = \"frustum.*\"\nbreaks = [16, 4]\nsource = \"t\"\nbecause = \"c\"\n");
+  ASSERT_TRUE(sweep.methods[0].expectation && sweep.methods[1].expectation);
+  EXPECT_TRUE(sweep.methods[0].expectation->never);
+  EXPECT_FALSE(sweep.methods[1].expectation->never);
+  EXPECT_EQ(sweep.methods[1].expectation->low, 4.0);
+  EXPECT_EQ(sweep.methods[1].expectation->high, 16.0);
+  EXPECT_FALSE(sweep.methods[2].expectation);
+}
+
+TEST_F(SweepFileTest, ErrorsAreOneLineThatNamesFilePlaceAndWhatWouldBeRight) {
+  const auto expect = [&](const std::string& text, const std::vector<std::string>& words) {
+    const std::string message = refusal(text);
+    EXPECT_FALSE(message.empty());
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    for (const std::string& word : words) {
+      EXPECT_NE(message.find(word), std::string::npos) << "'" << word << "' in: " << message;
+    }
+  };
+  const auto with_dial = [&](const std::string& values) {
+    return head + "[dial]\nname = \"edge\"\nvalues = " + values + "\n" + scene;
+  };
+  const std::string good = head + dial + scene;
+  ASSERT_EQ(refusal(good), "");
+  expect(with_dial("[1, 2, 3]"), {"test.toml:7", "at least 8"});
+  expect(with_dial("[1, 2, 3, 4, 5, 6, 7, 7]"), {"test.toml:7", "order"});
+  expect(with_dial("[1, 2, 3, 4, 5, 6, 7, 6]"), {"order"});
+  expect(with_dial("[1, 2, 3, 4, 5, 6, 7, nan]"), {"finite"});
+  expect(with_dial("[1, 2, 3, 4, 5, 6, 7, \"8\"]"), {"finite numbers"});
+  expect(head + scene, {"test.toml", "[dial]", "missing"});
+  expect(head + dial, {"test.toml", "[scene]", "missing"});
+  expect("failure = \"F1\"\n", {"description", "missing"});
+  expect("colour = 1\n" + good, {"test.toml:1", "colour", "resolution"});
+  expect("resolution = \"big\"\n" + good, {"test.toml:1", "WIDTHxHEIGHT"});
+  expect("rounds = 0\n" + good, {"test.toml:1", "rounds"});
+  expect("description = \"d\"\nfailure = \"F\"\ncullers = [\"frustum.octree[depth=${dial}]\"]\n" +
+             dial + scene,
+         {"test.toml:3", "depth"});
+  expect(good + "[limit]\nmetric = \"recall\"\n", {"recall", "false_px"});
+  expect(good + "[limit]\nmetric = \"over\"\ncounter = \"plane_tests\"\n", {"not both"});
+  expect(good + "[limit]\nat_most = 1\nat_most_ratio = 2\n", {"not both"});
+  expect(good + "[limit]\ncounter = \"plane_tests\"\n", {"at_most"});
+  const std::string why = "source = \"s\"\nbecause = \"b\"\n";
+  expect(good + "[[expect]]\nculler = \"frustum.*\"\nbreaks = \"soon\"\n" + why, {"never"});
+  expect(good + "[[expect]]\nculler = \"frustum.*\"\nbreaks = [100, 200]\n" + why,
+         {"no value of the dial"});
+  expect(good + "[[expect]]\nculler = \"portal.*\"\nbreaks = \"never\"\n" + why,
+         {"portal.*", "frustum.flat"});
+  expect(good + "[[expect]]\nculler = \"frustum.*\"\nbreaks = \"never\"\n", {"source"});
+}
+
+TEST_F(SweepFileTest, EverySweepOfTheRepositoryCanBeReadAndSaysWhatItExpects) {
+  const std::filesystem::path folder =
+      std::filesystem::path(VISLAB_SOURCE_DIR) / "experiments" / "stress";
+  const std::vector<Sweep> sweeps = load_sweeps(folder, folder_.path(), registry_);
+  EXPECT_FALSE(sweeps.empty());
+  for (const Sweep& sweep : sweeps) {
+    EXPECT_FALSE(sweep.description.empty()) << sweep.name;
+    EXPECT_TRUE(std::ranges::any_of(sweep.methods, [](const SweepMethod& method) {
+      return method.expectation.has_value();
+    })) << sweep.name;
+  }
+}
+
+}  // namespace
+}  // namespace vislab

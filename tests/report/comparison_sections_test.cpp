@@ -1,0 +1,114 @@
+#include "report/comparison_sections.h"
+
+#include <gtest/gtest.h>
+
+#include "report/sweep_chart.h"
+#include "report/sweep_section.h"
+#include "tests/report/fabricated.h"
+
+namespace vislab {
+namespace {
+
+/// A sweep in which the second of two methods breaks at 8.
+SweepResult fabricated_sweep() {
+  Sweep sweep;
+  sweep.name = "made_up_sweep";
+  sweep.failure = "F1";
+  sweep.description = "Something grows";
+  sweep.dial = {"edge", "m", {1, 2, 4, 8}, {"1", "2", "4", "8"}};
+  SweepExpectation never{"frustum.flat", true, 0, 0, "a paper", "planes hold it"};
+  sweep.methods = {{"frustum.flat", {4, "frustum.flat"}, never},
+                   {"frustum.wrong", {4, "frustum.wrong"}, {}}};
+  std::vector<CellSummary> right(4, fabricated_cell("frustum.flat", 0.3, 0, 1.0));
+  std::vector<CellSummary> wrong(4, fabricated_cell("frustum.wrong", 0.2, 0, 1.0));
+  for (CellSummary& cell : wrong) cell.guarantee = Guarantee::erroneous;
+  wrong[3].false_px = 77;
+  return find_break_points(sweep, [&](std::size_t value, const std::string& chain) {
+    return chain == "frustum.flat" ? &right[value] : &wrong[value];
+  });
+}
+
+TEST(SweepSection, SaysWhereEachMethodBreaksAndWhatWasExpected) {
+  const std::vector<Fields> fields = sweep_fields({fabricated_sweep()});
+  ASSERT_EQ(fields.size(), 1U);
+  const auto& rows = fields[0].lists.at("rows");
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0].values.at("breaks"), "none within 1 m to 8 m");
+  EXPECT_NE(rows[0].values.at("expected").find("never breaks: planes hold it"), std::string::npos);
+  EXPECT_EQ(rows[0].values.at("agreement"), "agrees");
+  EXPECT_EQ(rows[1].values.at("breaks"), "**at 8 m**");
+  EXPECT_EQ(rows[1].values.at("worst"), "77.0 at 8 m");
+  EXPECT_EQ(rows[1].values.at("agreement"), "–");
+}
+
+TEST(SweepSection, SweepsThatWereNotRunAreLeftOut) {
+  Sweep sweep;
+  sweep.dial = {"edge", "m", {1, 2}, {"1", "2"}};
+  sweep.methods = {{"m", {"m", "m"}, {}}};
+  const SweepResult nothing =
+      find_break_points(sweep, [](std::size_t, const std::string&) { return nullptr; });
+  EXPECT_TRUE(sweep_fields({nothing}).empty());
+  EXPECT_FALSE(has_sweep_chart(nothing));
+}
+
+TEST(SweepChart, RingsTheBreakPointAndNamesTheDial) {
+  const std::string script = sweep_chart_script(fabricated_sweep(), "sweep-1.svg");
+  EXPECT_NE(script.find("edge (m)"), std::string::npos);
+  EXPECT_NE(script.find("$break1"), std::string::npos);
+  EXPECT_EQ(script.find("$break0"), std::string::npos);
+  EXPECT_LT(script.find("set terminal"), script.find("set output"));
+}
+
+TEST(Controls, EachWrongMethodStandsWithItsWorstDamage) {
+  ReportInput input;
+  BlockSummary block = fabricated_block("plain");
+  block.cells.push_back(fabricated_cell("frustum.flat", 0.3, 0, 1.0));
+  CellSummary wrong = fabricated_cell("frustum.wrong", 0.2, 1000, 6.5);
+  wrong.guarantee = Guarantee::erroneous;
+  block.cells.push_back(wrong);
+  input.blocks.push_back(block);
+  BlockSummary stress = fabricated_block("stress");
+  wrong.false_px = 9'000;
+  stress.cells.push_back(wrong);
+  input.sweep_blocks.push_back(stress);
+  const std::vector<Fields> rows = control_fields(input);
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_NE(rows[0].values.at("false_px").find("9,000 of 15,728,640"), std::string::npos);
+  EXPECT_NE(rows[0].values.at("false_px").find("stress"), std::string::npos);
+  EXPECT_NE(rows[0].values.at("over").find("6.50 against 1.00, on plain"), std::string::npos);
+}
+
+TEST(GuideSection, GivesOneSentenceOfAdviceAndARowAScene) {
+  BlockSummary block = fabricated_block("plain");
+  for (const auto& [name, us] :
+       {std::pair{"frustum.a", 40.0}, {"frustum.b", 20.0}, {"frustum.c", 60.0}}) {
+    CellSummary cell = fabricated_cell(name, 0.3, 0, 1.0);
+    cell.cull_us = fabricated_time(us);
+    block.cells.push_back(cell);
+  }
+  const std::vector<Fields> guides = guide_fields({block});
+  ASSERT_EQ(guides.size(), 1U);
+  EXPECT_EQ(guides[0].lists.at("advice")[0].values.at("sentence"),
+            "On the 1 scene, take `frustum.b`: it decides soonest on 1 of them.");
+  EXPECT_EQ(guides[0].lists.at("rows")[0].values.at("runner_up"), "`frustum.a`");
+  EXPECT_EQ(guides[0].lists.at("rows")[0].values.at("moving"), "–");
+}
+
+TEST(PublishedSection, RowsWithoutCellsSaySoAndSourcesWithoutAnyAreLeftOut) {
+  BlockSummary block = fabricated_block("mixed");
+  block.cells.push_back(fabricated_cell("frustum.flat", 0.5, 0, 1.0));
+  PublishedFigures figures{"Thesis", "Somebody 2016", "odd", {}};
+  figures.rows.push_back({"moving", "5.2", 50.0, 60.0, "mixed", "orbit", "frustum.flat", "none"});
+  figures.rows.push_back({"still", "5.3", 50.0, 60.0, "mixed", "still", "frustum.flat", "none"});
+  const std::vector<Fields> entries = published_fields({figures}, {block});
+  ASSERT_EQ(entries.size(), 1U);
+  const auto& rows = entries[0].lists.at("rows");
+  EXPECT_EQ(rows[0].values.at("published"), "1.20");
+  EXPECT_NE(rows[0].values.at("own").find("2.00"), std::string::npos);
+  EXPECT_EQ(rows[1].values.at("own"), "not run");
+  figures.rows.erase(figures.rows.begin());
+  EXPECT_TRUE(published_fields({figures}, {block}).empty());
+}
+
+}  // namespace
+}  // namespace vislab
