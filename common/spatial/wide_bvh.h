@@ -10,7 +10,7 @@
 //   every instruction set.
 // Cost: build O(n) along the Z curve and O(n log n) else; query O(blocks that the frustum's
 //   surface touches + runs); move O(1), refit O(changed blocks and their ancestors).
-// Memory: about 40 bytes an object.
+// Memory: 50 to 80 bytes an object, half of it for rebuilds.
 // Limits: moving objects keep their place in the order, so that queries get slower as they mix:
 //   decay() tells, and a new build mends.
 // Sources: Wald, Benthin and Boulos 2008 (wide nodes); Assarsson and Moeller 2000 (plane masks);
