@@ -13,8 +13,9 @@ namespace vislab {
 /// One entry for each family with enough methods, for templates/guide.md.
 std::vector<Fields> guide_fields(const std::vector<BlockSummary>& blocks);
 
-/// One entry for each chain that is declared erroneous and was judged on any block, stress sweeps
-/// included, for templates/controls.md.
+/// One entry for each mistake of the methods that are declared erroneous and were judged on any
+/// block, stress sweeps included, for templates/controls.md. Methods of one summary make the same
+/// mistake; the worst of them stands for it.
 std::vector<Fields> control_fields(const ReportInput& input);
 
 /// One entry for each source of which any figure has its own beside it, for templates/published.md.

@@ -37,12 +37,25 @@ const CellSummary* right_one(const BlockSummary& block, const CellSummary& wrong
   return best;
 }
 
-std::map<std::string, Damage> damages_of(const std::vector<const BlockSummary*>& blocks) {
+/// What is wrong with it, in its own words; empty if this program does not know it.
+std::string summary_of(const Registry* cullers, const std::string& chain) {
+  if (cullers == nullptr) return {};
+  try {
+    return cullers->make(chain)->info().summary;
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
+/// By what is wrong: the same mistake in several sizes stands there once.
+std::map<std::string, Damage> damages_of(const std::vector<const BlockSummary*>& blocks,
+                                         const Registry* cullers) {
   std::map<std::string, Damage> damages;
   for (const BlockSummary* block : blocks) {
     for (const CellSummary& cell : block->cells) {
       if (cell.guarantee != Guarantee::erroneous || !cell.judged) continue;
-      Damage& damage = damages[cell.canonical];
+      const std::string wrong = summary_of(cullers, cell.canonical);
+      Damage& damage = damages[wrong.empty() ? cell.canonical : wrong];
       if (damage.false_cell == nullptr || false_share(cell) > false_share(*damage.false_cell)) {
         damage.false_cell = &cell;
         damage.false_block = block;
@@ -60,16 +73,6 @@ std::map<std::string, Damage> damages_of(const std::vector<const BlockSummary*>&
   return damages;
 }
 
-/// What is wrong with it, in its own words; "–" if this program does not know it.
-std::string summary_of(const Registry* cullers, const std::string& chain) {
-  if (cullers == nullptr) return "–";
-  try {
-    return markdown_text(cullers->make(chain)->info().summary);
-  } catch (const InputError&) {
-    return "–";
-  }
-}
-
 }  // namespace
 
 std::vector<Fields> control_fields(const ReportInput& input) {
@@ -77,11 +80,12 @@ std::vector<Fields> control_fields(const ReportInput& input) {
   for (const BlockSummary& block : input.blocks) blocks.push_back(&block);
   for (const BlockSummary& block : input.sweep_blocks) blocks.push_back(&block);
   std::vector<Fields> rows;
-  for (const auto& [chain, damage] : damages_of(blocks)) {
+  for (const auto& [key, damage] : damages_of(blocks, input.cullers)) {
     Fields row;
     const CellSummary& worst = *damage.false_cell;
+    const std::string wrong = summary_of(input.cullers, worst.canonical);
     row.values["method"] = markdown_code(worst.culler);
-    row.values["wrong"] = summary_of(input.cullers, chain);
+    row.values["wrong"] = wrong.empty() ? "–" : markdown_text(wrong);
     row.values["false_px"] = worst.false_px == 0
                                  ? "0 everywhere"
                                  : format_of(worst.false_px, worst.pixels) + " (" +

@@ -12,9 +12,8 @@ Fields row_fields(const PublishedRow& row, const OwnFigure& own) {
   fields.values["published"] = format_number(row.ratio());
   fields.values["own"] = own.cell == nullptr ? "not run" : format_estimate(own.ratio);
   fields.values["scene"] = markdown_text(row.scene + (row.path.empty() ? "" : ", " + row.path));
-  fields.values["method"] =
-      own.cell == nullptr ? markdown_code(row.culler) : markdown_code(own.cell->culler);
-  fields.values["against"] = markdown_code(row.against);
+  fields.values["method"] = markdown_code(row.short_culler);
+  fields.values["against"] = markdown_code(row.short_against);
   return fields;
 }
 

@@ -36,10 +36,14 @@ PublishedRow read_row(const toml::table& table, const Registry& registry, const 
   row.with_fps = frames_a_second(table, "with_fps", file);
   row.scene = text_of(table, "scene", file);
   row.path = value_of<std::string>(table, "path", "a text", file).value_or("");
+  const std::string culler = text_of(table, "culler", file);
+  const std::string against =
+      value_of<std::string>(table, "against", "a text", file).value_or("none");
   try {
-    row.culler = registry.canonical(text_of(table, "culler", file));
-    row.against = registry.canonical(
-        value_of<std::string>(table, "against", "a text", file).value_or("none"));
+    row.culler = registry.canonical(culler);
+    row.against = registry.canonical(against);
+    row.short_culler = registry.short_name(culler);
+    row.short_against = registry.short_name(against);
   } catch (const InputError& error) {
     throw InputError(place(file, table) + ": " + error.what());
   }

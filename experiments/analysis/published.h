@@ -25,7 +25,8 @@ struct PublishedRow {
   std::string what, table;
   double without_fps = 0.0, with_fps = 0.0;
   std::string scene, path;
-  std::string culler, against;  // canonical
+  std::string culler, against;                        // canonical
+  std::string short_culler = {}, short_against = {};  // the same as tables show them
 
   /// How many times as many frames a second as without.
   double ratio() const { return with_fps / without_fps; }

@@ -35,7 +35,7 @@ std::string growing_boxes(const std::string& expected) {
          expected + "\nsource = \"s\"\nbecause = \"it is wrong\"\n";
 }
 
-TEST(Stress, ASweepRunsOnceAndTheAtlasTellsWhereMethodsBreak) {
+TEST(Stress, ASweepFileRunsOnceAndItsPlanIsDone) {
   const TemporaryFolder folder;
   const std::string results = folder.path() / "results";
   const std::string file = folder.write("growing.toml", growing_boxes("[1, 64]"));

@@ -98,8 +98,10 @@ TEST(PublishedSection, RowsWithoutCellsSaySoAndSourcesWithoutAnyAreLeftOut) {
   BlockSummary block = fabricated_block("mixed");
   block.cells.push_back(fabricated_cell("frustum.flat", 0.5, 0, 1.0));
   PublishedFigures figures{"Thesis", "Somebody 2016", "odd", {}};
-  figures.rows.push_back({"moving", "5.2", 50.0, 60.0, "mixed", "orbit", "frustum.flat", "none"});
-  figures.rows.push_back({"still", "5.3", 50.0, 60.0, "mixed", "still", "frustum.flat", "none"});
+  figures.rows.push_back({"moving", "5.2", 50.0, 60.0, "mixed", "orbit", "frustum.flat", "none",
+                          "frustum.flat", "none"});
+  figures.rows.push_back({"still", "5.3", 50.0, 60.0, "mixed", "still", "frustum.flat", "none",
+                          "frustum.flat", "none"});
   const std::vector<Fields> entries = published_fields({figures}, {block});
   ASSERT_EQ(entries.size(), 1U);
   const auto& rows = entries[0].lists.at("rows");
