@@ -67,10 +67,7 @@ class SweepChart {
     return limit;
   }
 
-  std::string y_title() const {
-    const SweepLimit& limit = result_.sweep.limit;
-    return limit.is_counter ? limit.metric + " a frame" : limit.metric;
-  }
+  std::string y_title() const { return result_.sweep.figure_name(); }
 
   void write_panel(double bottom) {
     const SweepDial& dial = result_.sweep.dial;

@@ -50,8 +50,12 @@ std::string agreement_text(const SweepVerdict& verdict) {
   return text.empty() ? "–" : text;
 }
 
-std::string limit_text(const SweepLimit& limit) {
-  const std::string metric = markdown_code(limit.metric) + (limit.is_counter ? " a frame" : "");
+std::string limit_text(const Sweep& sweep) {
+  const SweepLimit& limit = sweep.limit;
+  std::string metric = markdown_code(limit.metric) + (limit.is_counter ? " a frame" : "");
+  if (limit.against) {
+    metric += " ÷ that of " + markdown_code(sweep.methods[*limit.against].culler);
+  }
   if (limit.at_most) return metric + " of at most " + format_number(*limit.at_most);
   if (limit.at_most_ratio) {
     return metric + " of at most " + format_number(*limit.at_most_ratio) +
@@ -92,7 +96,7 @@ std::vector<Fields> sweep_fields(const std::vector<SweepResult>& sweeps) {
     entry.values["sweep"] = markdown_text(result.sweep.name);
     entry.values["description"] = markdown_text(result.sweep.description);
     entry.values["dial"] = markdown_text(result.sweep.dial.name);
-    entry.values["limit"] = limit_text(result.sweep.limit);
+    entry.values["limit"] = limit_text(result.sweep);
     entry.values["file"] = sweep_chart_file_name(i);
     entry.flag("chart", has_sweep_chart(result));
     for (const SweepVerdict& verdict : result.verdicts) {

@@ -66,6 +66,16 @@ Agreement agreement_of(const SweepVerdict& verdict, const SweepDial& dial) {
   return within ? Agreement::agrees : Agreement::differs;
 }
 
+/// A method's point at a value of the dial: its own figure, or its share of another method's.
+SweepPoint point_at(const Sweep& sweep, const SweepMethod& method, std::size_t value,
+                    const CellAtValue& cell_at) {
+  SweepPoint point = point_of(cell_at(value, method.chains[value]), sweep.limit);
+  if (!sweep.limit.against) return point;
+  const SweepMethod& other = sweep.methods[*sweep.limit.against];
+  point.figure /= point_of(cell_at(value, other.chains[value]), sweep.limit).figure;
+  return point;
+}
+
 SweepVerdict verdict_on(const Sweep& sweep, const SweepMethod& method, const CellAtValue& cell_at) {
   SweepVerdict verdict;
   verdict.culler = method.culler;
@@ -73,7 +83,7 @@ SweepVerdict verdict_on(const Sweep& sweep, const SweepMethod& method, const Cel
   std::uint64_t pixels = 0;
   for (std::size_t i = 0; i < method.chains.size(); ++i) {
     const CellSummary* const cell = cell_at(i, method.chains[i]);
-    verdict.points.push_back(point_of(cell, sweep.limit));
+    verdict.points.push_back(point_at(sweep, method, i, cell_at));
     if (cell == nullptr) continue;
     verdict.guarantee = std::max(verdict.guarantee, cell->guarantee);
     if (pixels == 0) pixels = cell->pixels;

@@ -143,7 +143,8 @@ std::vector<DialValue> read_dial(const toml::table& table, SweepDial& dial,
 }
 
 SweepLimit read_limit(const toml::table& table, const std::string& file) {
-  refuse_unknown_keys(table, {"metric", "counter", "at_most", "at_most_ratio"}, "[limit]", file);
+  refuse_unknown_keys(table, {"metric", "counter", "at_most", "at_most_ratio", "against"},
+                      "[limit]", file);
   SweepLimit limit;
   const auto metric = value_of<std::string>(table, "metric", "a text", file);
   const auto counter = value_of<std::string>(table, "counter", "a text", file);
@@ -151,7 +152,7 @@ SweepLimit read_limit(const toml::table& table, const std::string& file) {
     throw InputError(place(file, *table.get("counter")) +
                      ": [limit] takes a metric or a counter, not both");
   }
-  if (counter) limit = {*counter, true, {}, {}};
+  if (counter) limit = {*counter, true, {}, {}, {}};
   if (metric) {
     std::vector<std::string> known;
     for (const Metric& entry : metrics()) {
@@ -222,6 +223,7 @@ class SweepReader {
     if (root_.contains("limit")) sweep_.limit = read_limit(table_at(root_, "limit", file_), file_);
     read_block_settings();
     read_methods();
+    read_against();
     read_expectations();
     make_blocks();
     return std::move(sweep_);
@@ -265,6 +267,23 @@ class SweepReader {
       sweep_.methods.push_back(std::move(method));
       written_.push_back(text);
     }
+  }
+
+  /// Which method the others' figures are shares of, if [limit] says so.
+  void read_against() {
+    if (!root_.contains("limit")) return;
+    const toml::table& limit = table_at(root_, "limit", file_);
+    const auto against = value_of<std::string>(limit, "against", "a text", file_);
+    if (!against) return;
+    const auto found = std::ranges::find(written_, *against);
+    if (found == written_.end()) {
+      throw InputError(place(file_, *limit.get("against")) + ": " +
+                       unknown_name("entry of cullers", *against, written_).what());
+    }
+    if (!sweep_.limit.at_most) {
+      throw InputError(place(file_, *limit.get("against")) + ": against needs at_most");
+    }
+    sweep_.limit.against = static_cast<std::size_t>(found - written_.begin());
   }
 
   /// The first expectation whose pattern fits a method counts.
@@ -354,6 +373,11 @@ auto failure_order(const Sweep& sweep) {
 }
 
 }  // namespace
+
+std::string Sweep::figure_name() const {
+  const std::string figure = limit.metric + (limit.is_counter ? " a frame" : "");
+  return limit.against ? figure + " ÷ that of " + methods[*limit.against].culler : figure;
+}
 
 std::string SweepDial::setting(std::size_t value) const {
   return name + " = " + texts[value] + (unit.empty() ? "" : " " + unit);

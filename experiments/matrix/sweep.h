@@ -18,6 +18,9 @@
 //   counter = "plane_tests"        instead of a metric: a counter of the methods, a frame
 //   at_most = 0.5                  or
 //   at_most_ratio = 2.0            times the figure at the dial's first value
+//   against = "frustum.flat"       an entry of `cullers`: figures are shares of its figure at the
+//   same
+//                                  value (1 = as much); needs at_most
 //   [[expect]]
 //   culler = "frustum.*"           pattern for entries of `cullers`, as they are written there
 //   breaks = "never"               or [4, 16]: the break point is one of the values in this range
@@ -56,6 +59,7 @@ struct SweepLimit {
   std::string metric = "false_px";  // or the name of a counter
   bool is_counter = false;
   std::optional<double> at_most, at_most_ratio;  // at most one of them; none: by the metric
+  std::optional<std::size_t> against;  // figures are shares of this method's at the same value
 };
 
 struct SweepExpectation {
@@ -87,6 +91,9 @@ struct Sweep {
   std::vector<std::size_t> block_of_value;
   /// The scenes and paths that the blocks name. Nothing is written until write_sweep_files().
   std::vector<SweepFile> files;
+
+  /// "false_px", "plane_tests a frame", "frame_ms ÷ that of frustum.flat"
+  std::string figure_name() const;
 };
 
 /// `name_or_file` is NAME of `folder`/NAME.toml, or a file. The blocks' scenes and paths are files

@@ -56,7 +56,7 @@ int atlas(const Lab& lab, const std::filesystem::path& results, bool json) {
       alarming |= verdict.is_alarming();
       table.add({sweep.name, sweep.failure, sweep.dial.name, sweep.dial.unit, verdict.culler,
                  verdict.was_measured() ? std::string(to_string(verdict.guarantee)) : "",
-                 sweep.limit.metric, verdict.limit, at(sweep, verdict.break_point),
+                 sweep.figure_name(), verdict.limit, at(sweep, verdict.break_point),
                  figure(verdict, verdict.worst), at(sweep, verdict.worst),
                  figure(verdict, verdict.least), at(sweep, verdict.least),
                  at(sweep, verdict.broken_promise), expected_of(verdict),

@@ -75,6 +75,29 @@ TEST(BreakPoint, IsMissingWhereNothingIsBeyondTheLimit) {
   EXPECT_FALSE(verdict.is_alarming());
 }
 
+TEST(BreakPoint, MayBeWhereAMethodIsNoBetterThanAnother) {
+  SweepLimit limit;
+  limit.metric = "frame_ms";
+  limit.at_most = 1.0;
+  limit.against = 1;
+  Sweep sweep = one_method(limit);
+  sweep.methods.push_back({"other", std::vector<std::string>(8, "other"), {}});
+  const CellAtValue cell = [](std::size_t value, const std::string& chain) {
+    static CellSummary cells[2];
+    CellSummary& found = cells[chain == "m" ? 0 : 1];
+    found = judged_cell();
+    // 0.5, 0.75, 1, 1.25 … times the other's, which grows as well.
+    const double other = 2.0 + static_cast<double>(value);
+    found.frame_ms.median.value =
+        chain == "m" ? other * (0.5 + 0.25 * static_cast<double>(value)) : other;
+    return &found;
+  };
+  const SweepResult result = find_break_points(sweep, cell);
+  EXPECT_EQ(result.verdicts[0].break_point, 3U);
+  EXPECT_DOUBLE_EQ(result.verdicts[0].points[1].figure, 0.75);
+  EXPECT_FALSE(result.verdicts[1].break_point) << "a method costs as much as itself";
+}
+
 TEST(BreakPoint, ApproximateMethodsMayLoseOneInAHundredPixels) {
   const auto cells = cells_with(Guarantee::approximate, [](std::size_t i, CellSummary& cell) {
     cell.false_px = i < 4 ? 10 : 11;
@@ -87,16 +110,16 @@ TEST(BreakPoint, OverMayDouble) {
     cell.over = i < 5 ? 2.0 : 2.01;
     if (i == 0) cell.over = 1.0;
   });
-  EXPECT_EQ(verdict_of(one_method({"over", false, {}, {}}), cells).break_point, 5U);
-  EXPECT_EQ(verdict_of(one_method({"over", false, 2.5, {}}), cells).break_point, std::nullopt);
-  EXPECT_EQ(verdict_of(one_method({"over", false, {}, 1.5}), cells).break_point, 1U);
+  EXPECT_EQ(verdict_of(one_method({"over", false, {}, {}, {}}), cells).break_point, 5U);
+  EXPECT_EQ(verdict_of(one_method({"over", false, 2.5, {}, {}}), cells).break_point, std::nullopt);
+  EXPECT_EQ(verdict_of(one_method({"over", false, {}, 1.5, {}}), cells).break_point, 1U);
 }
 
 TEST(BreakPoint, CountersAreLookedUpByTheirName) {
   const auto cells = cells_with(Guarantee::conservative, [](std::size_t i, CellSummary& cell) {
     cell.counters["plane_tests"] = 10.0 * static_cast<double>(i + 1);
   });
-  const Sweep sweep = one_method({"plane_tests", true, 45.0, {}});
+  const Sweep sweep = one_method({"plane_tests", true, 45.0, {}, {}});
   EXPECT_EQ(verdict_of(sweep, cells).break_point, 4U);
 }
 
@@ -119,7 +142,7 @@ TEST(BreakPoint, AFailureIsOneAndAMissingValueBeforeItLeavesItOpen) {
 }
 
 TEST(BreakPoint, NothingMeasuredIsNeitherABreakNorAgreement) {
-  Sweep sweep = one_method({"over", false, {}, {}});
+  Sweep sweep = one_method({"over", false, {}, {}, {}});
   sweep.methods[0].expectation = SweepExpectation{"m", true, 0, 0, "s", "b"};
   const SweepVerdict verdict = verdict_of(sweep, {});
   EXPECT_FALSE(verdict.was_measured());
@@ -150,7 +173,7 @@ TEST(BreakPoint, APromiseIsBrokenByALostRayToo) {
   const auto cells = cells_with(Guarantee::conservative, [](std::size_t i, CellSummary& cell) {
     cell.false_jittered = i == 2 ? 1 : 0;
   });
-  const SweepVerdict verdict = verdict_of(one_method({"over", false, {}, {}}), cells);
+  const SweepVerdict verdict = verdict_of(one_method({"over", false, {}, {}, {}}), cells);
   EXPECT_FALSE(verdict.break_point) << "over stays as it is";
   EXPECT_EQ(verdict.broken_promise, 2U);
   EXPECT_TRUE(verdict.is_alarming());
@@ -163,7 +186,7 @@ TEST(BreakPoint, AFigureThatDoesNotApplyLeavesTheSweepOpen) {
   const auto cells = cells_with(Guarantee::conservative, [](std::size_t i, CellSummary& cell) {
     if (i == 2) cell.over = std::numeric_limits<double>::quiet_NaN();
   });
-  const SweepVerdict verdict = verdict_of(one_method({"over", false, {}, {}}), cells);
+  const SweepVerdict verdict = verdict_of(one_method({"over", false, {}, {}, {}}), cells);
   EXPECT_FALSE(verdict.is_complete);
   EXPECT_TRUE(std::isnan(verdict.points[2].figure));
 }
