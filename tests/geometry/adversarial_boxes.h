@@ -7,10 +7,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <sstream>
+#include <string>
 
 #include "common/geometry/bounds.h"
 #include "common/geometry/camera.h"
 #include "common/geometry/frustum.h"
+#include "common/geometry/oriented_box.h"
 #include "common/geometry/random.h"
 
 namespace vislab::test {
@@ -255,6 +258,42 @@ inline Camera touching_camera(Random& random, Camera camera, const Aabb& box) {
     camera.pose.eye[axis] = std::nextafter(camera.pose.eye[axis], to);
   }
   return camera;
+}
+
+/// A box of any orientation, sometimes skewed, that touches one plane as nearly as double allows.
+inline OrientedBox touching_box(Random& random, const Camera& camera, const Aabb& box) {
+  const glm::dmat3 turn(look_at(glm::dvec3(0.0), random_vector(random, 1.0)).right,
+                        random_vector(random, 1.0), random_vector(random, 1.0));
+  OrientedBox result = oriented(box);
+  const Frustum frustum = frustum_of(camera);
+  const Plane& plane =
+      frustum.planes[random.below(static_cast<std::uint64_t>(frustum.plane_count))];
+  result.half_axes = turn * result.half_axes;
+  double reach = 0.0;
+  for (int i = 0; i < 3; ++i) reach += std::abs(glm::dot(plane.normal, result.half_axes[i]));
+  const double distance = std::abs(plane.signed_distance(result.center));
+  const double nudge = 1.0 + 4.0 * random.uniform(-1.0, 1.0) * 0x1p-52;
+  if (reach > 0.0 && random.below(2) == 0) result.half_axes *= distance / reach * nudge;
+  return result;
+}
+
+inline std::string digits_of(const glm::dvec3& v) {
+  std::ostringstream text;
+  text << std::hexfloat << '(' << v.x << ", " << v.y << ", " << v.z << ')';
+  return text.str();
+}
+
+/// What it takes to repeat a finding.
+inline std::string description_of(const Camera& camera, const Aabb& box) {
+  const auto& [eye, right, up, back] = camera.pose;
+  const Lens& lens = camera.lens;
+  std::ostringstream text;
+  text << std::hexfloat << (lens.projection == Projection::perspective ? "perspective" : "ortho")
+       << " lens " << lens.left << ' ' << lens.right << ' ' << lens.bottom << ' ' << lens.top << ' '
+       << lens.near_m << ' ' << lens.far_m << "\npose " << digits_of(eye) << ' ' << digits_of(right)
+       << ' ' << digits_of(up) << ' ' << digits_of(back) << "\nbox " << digits_of(box.min) << ' '
+       << digits_of(box.max);
+  return text.str();
 }
 
 }  // namespace vislab::test

@@ -53,6 +53,12 @@ Vector<Interval> interval_of(const Exact& v) {
   return {{interval_of(v[0]), interval_of(v[1]), interval_of(v[2])}};
 }
 
+/// Vertices in a mesh's frame, and what takes them to the world.
+struct Triangle {
+  const std::array<glm::vec3, 3>& vertices;
+  const glm::dmat4x3& transform;
+};
+
 /// Half-space normal . (p - eye) >= offset, or the extent of a frustum along an axis, in both kinds
 /// of numbers.
 struct Direction {
@@ -227,6 +233,20 @@ struct ExactJudge::Frusta {
     return surely(distance<Number>(plane, box.center) - reach<Number>(plane, box) >= Number(0));
   }
 
+  template <typename Number>
+  bool outside(const HalfSpace& plane, const Triangle& triangle) const {
+    const auto& normal = plane.normal.as<Number>();
+    for (const glm::vec3& vertex : triangle.vertices) {
+      Number along = distance<Number>(plane, triangle.transform[3]);
+      for (int i = 0; i < 3; ++i) {
+        along = along + dot(normal, vector_of<Number>(triangle.transform[i])) *
+                            Number(static_cast<double>(vertex[i]));
+      }
+      if (!surely(along < Number(0))) return false;
+    }
+    return true;
+  }
+
   template <typename Volume>
   bool outside_of_a_plane(const Volume& volume) const {
     {
@@ -393,6 +413,10 @@ bool ExactJudge::outside_of_a_plane(const Sphere& sphere) const {
 }
 bool ExactJudge::outside_of_a_plane(const OrientedBox& box) const {
   return frusta_->outside_of_a_plane(box);
+}
+bool ExactJudge::outside_of_a_plane(const std::array<glm::vec3, 3>& triangle,
+                                    const glm::dmat4x3& transform) const {
+  return frusta_->outside_of_a_plane(Triangle{triangle, transform});
 }
 bool ExactJudge::inside(const Aabb& box) const { return frusta_->inside_of_all(box); }
 bool ExactJudge::inside(const Sphere& sphere) const { return frusta_->inside_of_all(sphere); }

@@ -1,6 +1,8 @@
 // Says in exact arithmetic where volumes lie to the frustum of a camera. For property tests.
 #pragma once
 
+#include <array>
+#include <glm/mat4x3.hpp>
 #include <memory>
 
 #include "common/geometry/bounds.h"
@@ -24,6 +26,9 @@ class ExactJudge {
   bool outside_of_a_plane(const Aabb& box) const;
   bool outside_of_a_plane(const Sphere& sphere) const;
   bool outside_of_a_plane(const OrientedBox& box) const;
+  /// Of a triangle whose vertices the transform takes to the world, in exact arithmetic too.
+  bool outside_of_a_plane(const std::array<glm::vec3, 3>& triangle,
+                          const glm::dmat4x3& transform) const;
 
   /// Is every point of the volume inside of all planes?
   bool inside(const Aabb& box) const;

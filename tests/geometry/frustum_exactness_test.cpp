@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <iostream>
-#include <sstream>
 #include <string>
 
 #include "common/geometry/bounding_spheres.h"
@@ -16,7 +15,9 @@ namespace {
 
 using test::adversarial_box;
 using test::adversarial_camera;
+using test::description_of;
 using test::ExactJudge;
+using test::touching_box;
 using test::touching_camera;
 
 #ifdef __SANITIZE_ADDRESS__
@@ -33,25 +34,6 @@ std::string name_of(Side side) {
   return side == Side::outside ? "outside" : side == Side::inside ? "inside" : "intersecting";
 }
 
-std::string digits_of(const glm::dvec3& v) {
-  std::ostringstream text;
-  text << std::hexfloat << '(' << v.x << ", " << v.y << ", " << v.z << ')';
-  return text.str();
-}
-
-/// What it takes to repeat a finding.
-std::string description_of(const Camera& camera, const Aabb& box) {
-  const auto& [eye, right, up, back] = camera.pose;
-  const Lens& lens = camera.lens;
-  std::ostringstream text;
-  text << std::hexfloat << (lens.projection == Projection::perspective ? "perspective" : "ortho")
-       << " lens " << lens.left << ' ' << lens.right << ' ' << lens.bottom << ' ' << lens.top << ' '
-       << lens.near_m << ' ' << lens.far_m << "\npose " << digits_of(eye) << ' ' << digits_of(right)
-       << ' ' << digits_of(up) << ' ' << digits_of(back) << "\nbox " << digits_of(box.min) << ' '
-       << digits_of(box.max);
-  return text.str();
-}
-
 /// A billionth of everything that a distance of the box is made of, metres.
 double margin_of(const Camera& camera, const Aabb& box) {
   const Lens& lens = camera.lens;
@@ -64,23 +46,6 @@ double margin_of(const Camera& camera, const Aabb& box) {
   const double slope = perspective ? 1.0 + window / lens.near_m : 1.0;
   return 1e-9 * (slope * (size + std::abs(lens.near_m)) + window +
                  (std::isfinite(lens.far_m) ? lens.far_m : 0.0));
-}
-
-/// A box of any orientation, sometimes skewed, that touches one plane as nearly as double allows.
-OrientedBox touching_box(Random& random, const Camera& camera, const Aabb& box) {
-  const glm::dmat3 turn(look_at(glm::dvec3(0.0), test::random_vector(random, 1.0)).right,
-                        test::random_vector(random, 1.0), test::random_vector(random, 1.0));
-  OrientedBox result = oriented(box);
-  const Frustum frustum = frustum_of(camera);
-  const Plane& plane =
-      frustum.planes[random.below(static_cast<std::uint64_t>(frustum.plane_count))];
-  result.half_axes = turn * result.half_axes;
-  double reach = 0.0;
-  for (int i = 0; i < 3; ++i) reach += std::abs(glm::dot(plane.normal, result.half_axes[i]));
-  const double distance = std::abs(plane.signed_distance(result.center));
-  const double nudge = 1.0 + 4.0 * random.uniform(-1.0, 1.0) * 0x1p-52;
-  if (reach > 0.0 && random.below(2) == 0) result.half_axes *= distance / reach * nudge;
-  return result;
 }
 
 /// A sphere around the box's centre that touches one plane as nearly as float allows.
