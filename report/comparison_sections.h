@@ -10,7 +10,7 @@
 
 namespace vislab {
 
-/// One entry for each family with enough methods, for templates/guide.md.
+/// One entry for each kind of culling with enough methods, for templates/guide.md.
 std::vector<Fields> guide_fields(const std::vector<BlockSummary>& blocks);
 
 /// One entry for each mistake of the methods that are declared erroneous and were judged on any

@@ -7,6 +7,18 @@
 namespace vislab {
 namespace {
 
+const char* kind_of(Culls culls) {
+  switch (culls) {
+    case Culls::back_faces:
+      return "back-face";
+    case Culls::outside_frustum:
+      return "view-frustum";
+    case Culls::hidden:
+      break;
+  }
+  return "occlusion";
+}
+
 std::string place_of(const BlockSummary& block) {
   return markdown_text(block.scene + (block.path.empty() ? "" : ", " + block.path));
 }
@@ -21,34 +33,41 @@ Fields row_fields(const GuideRow& row) {
           ? format_percent(block.moving_objects / static_cast<double>(block.objects))
           : "–";
   fields.values["triangles"] = format_count(block.triangles);
+  const auto cost = [&](const CellSummary& cell) {
+    return block.drawn ? format_number(cost_ms(block, cell)) : std::string("not drawn");
+  };
   fields.values["best"] = markdown_code(row.best->culler);
+  fields.values["best_ms"] = cost(*row.best);
   fields.values["best_us"] = format_number(decision_us(*row.best));
   fields.values["runner_up"] = markdown_code(row.runner_up->culler);
-  fields.values["runner_up_us"] = format_number(decision_us(*row.runner_up));
+  fields.values["runner_up_ms"] = cost(*row.runner_up);
+  fields.values["soonest"] = markdown_code(row.soonest->culler);
+  fields.values["soonest_us"] = format_number(decision_us(*row.soonest));
   fields.values["build_ms"] = format_rounded(row.best->build_ms);
   fields.values["bytes"] = format_bytes(row.best->bytes);
   fields.values["over"] = format_number(row.best->over);
-  fields.values["best_frame"] =
-      row.best_frame == nullptr ? "not drawn" : markdown_code(row.best_frame->culler);
-  fields.values["frame_ms"] =
-      row.best_frame == nullptr ? "–" : format_number(row.best_frame->frame_ms.median.value);
   return fields;
 }
 
-/// "On all 9 scenes and paths, `X` …"
+/// "Of the 12 methods that were right on all 9 scenes and paths, take `X`: …"
 std::string advice_text(const GuideAdvice& advice) {
   const GuideCandidate& choice = advice.choice;
   const char* const group = advice.group == GuideAdvice::Group::still ? " whose objects stand still"
                             : advice.group == GuideAdvice::Group::moving ? " whose objects move"
                                                                          : "";
+  const std::string places = advice.blocks == 1
+                                 ? "the one scene and path"
+                                 : "all " + std::to_string(advice.blocks) + " scenes and paths";
   const auto wins = static_cast<std::size_t>(choice.wins);
-  std::string text = "On the " + std::to_string(advice.blocks) +
-                     (advice.blocks == 1 ? " scene" : " scenes") + group + ", take " +
-                     markdown_code(choice.culler) + ": it decides soonest on " +
-                     std::to_string(wins) + " of them";
-  if (wins == advice.blocks) return text + ".";
-  return text + ", takes " + format_number(choice.mean_ratio) +
-         " times as long as the best of each in the geometric mean, and at worst " +
+  std::string text = "Of the " + std::to_string(advice.eligible) + " methods to choose from on " +
+                     places + group + ", take " + markdown_code(choice.culler);
+  if (choice.guarantee != Guarantee::conservative) {
+    text += " (which promises no more than *" + std::string(to_string(choice.guarantee)) + "*)";
+  }
+  if (wins == advice.blocks) return text + ": nothing costs less there.";
+  return text + ": it costs least on " + std::to_string(wins) + " of them, " +
+         format_number(choice.mean_ratio) +
+         " times as much as the best of each in the geometric mean, and at worst " +
          format_number(choice.worst_ratio) + " times, on " + place_of(*choice.worst_block) + ".";
 }
 
@@ -56,9 +75,9 @@ std::string advice_text(const GuideAdvice& advice) {
 
 std::vector<Fields> guide_fields(const std::vector<BlockSummary>& blocks) {
   std::vector<Fields> entries;
-  for (const FamilyGuide& guide : make_guides(blocks)) {
+  for (const CullerGuide& guide : make_guides(blocks)) {
     Fields entry;
-    entry.values["family"] = markdown_text(guide.family);
+    entry.values["kind"] = kind_of(guide.culls);
     for (const GuideRow& row : guide.rows) entry.lists["rows"].push_back(row_fields(row));
     auto& advice = entry.lists["advice"];
     for (const GuideAdvice& one : guide.advice) {

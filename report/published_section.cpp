@@ -4,14 +4,29 @@
 namespace vislab {
 namespace {
 
+/// "mixed, mixed_moving, 512 × 512, 24 frames": what our figure was measured on.
+std::string place_of(const PublishedRow& row, const OwnFigure& own) {
+  if (own.block == nullptr) return row.scene + (row.path.empty() ? "" : ", " + row.path);
+  const BlockSummary& block = *own.block;
+  return block.scene + (block.path.empty() ? "" : ", " + block.path) + ", " +
+         std::to_string(block.viewport.width) + " × " + std::to_string(block.viewport.height) +
+         ", " + std::to_string(block.frames) + " frames";
+}
+
 Fields row_fields(const PublishedRow& row, const OwnFigure& own) {
   Fields fields;
   fields.values["what"] = markdown_text(row.what);
   fields.values["table"] = markdown_text(row.table);
-  fields.values["fps"] = format_number(row.without_fps) + " → " + format_number(row.with_fps);
-  fields.values["published"] = format_number(row.ratio());
+  if (row.published.empty()) {
+    fields.values["fps"] = format_number(row.without_fps) + " → " + format_number(row.with_fps);
+    fields.values["published"] = format_number(row.ratio());
+  } else {
+    fields.values["fps"] = "–";
+    fields.values["published"] = markdown_text(row.published);
+  }
+  fields.values["metric"] = row.metric == PublishedRow::Metric::cull_us ? "cull_us" : "frame_ms";
   fields.values["own"] = own.cell == nullptr ? "not run" : format_estimate(own.ratio);
-  fields.values["scene"] = markdown_text(row.scene + (row.path.empty() ? "" : ", " + row.path));
+  fields.values["scene"] = markdown_text(place_of(row, own));
   fields.values["method"] = markdown_code(row.short_culler);
   fields.values["against"] = markdown_code(row.short_against);
   return fields;

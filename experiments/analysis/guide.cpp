@@ -9,43 +9,42 @@ namespace vislab {
 namespace {
 
 constexpr std::size_t fewest_methods = 3;
+constexpr double most_triangles = 1.01;  // of the fewest, where nothing is drawn
 
-/// "frustum" of "frustum.flat[test=vertex]".
-std::string family_of(const std::string& chain) {
-  return chain.substr(0, chain.find_first_of(".["));
-}
-
-bool is_candidate(const CellSummary& cell) {
+bool is_right(const BlockSummary& block, const CellSummary& cell) {
   return !cell.anchor && cell.guarantee != Guarantee::erroneous &&
          cell.status == ResultCell::Status::done && is_free_of_errors(cell) &&
-         cell.canonical.find('>') == std::string::npos && decision_us(cell) > 0.0;
+         cell.canonical.find('>') == std::string::npos && cost_ms(block, cell) > 0.0;
 }
 
 using RightCells = std::vector<const CellSummary*>;
-using Measured = std::vector<std::pair<const BlockSummary*, RightCells>>;  // soonest first
+using Measured = std::vector<std::pair<const BlockSummary*, RightCells>>;  // least cost first
 
-/// The right methods of each family on the block, soonest first.
-std::map<std::string, RightCells> candidates_of(const BlockSummary& block) {
-  std::map<std::string, RightCells> families;
+void leave_out_what_hardly_culls(RightCells& cells) {
+  const auto triangles = [](const CellSummary* cell) { return cell->submitted_triangles; };
+  const double fewest = triangles(*std::ranges::min_element(cells, {}, triangles));
+  std::erase_if(cells,
+                [&](const CellSummary* cell) { return triangles(cell) > most_triangles * fewest; });
+}
+
+/// The candidates of each kind on the block, least cost first.
+std::map<Culls, RightCells> candidates_of(const BlockSummary& block) {
+  std::map<Culls, RightCells> kinds;
   for (const CellSummary& cell : block.cells) {
-    if (is_candidate(cell)) families[family_of(cell.canonical)].push_back(&cell);
+    if (is_right(block, cell)) kinds[cell.culls].push_back(&cell);
   }
-  for (auto& [family, cells] : families) {
-    std::ranges::stable_sort(cells, {}, [](const CellSummary* cell) { return decision_us(*cell); });
+  for (auto& [culls, cells] : kinds) {
+    if (!block.drawn) leave_out_what_hardly_culls(cells);
+    std::ranges::stable_sort(cells, {},
+                             [&](const CellSummary* cell) { return cost_ms(block, *cell); });
   }
-  return families;
+  return kinds;
 }
 
 GuideRow row_of(const BlockSummary& block, const RightCells& cells) {
-  GuideRow row{&block, cells[0], cells[1], nullptr};
-  for (const CellSummary* cell : cells) {
-    if (!block.drawn || !cell->frame_ms.measured()) continue;
-    if (row.best_frame == nullptr ||
-        cell->frame_ms.median.value < row.best_frame->frame_ms.median.value) {
-      row.best_frame = cell;
-    }
-  }
-  return row;
+  const auto soonest = std::ranges::min_element(
+      cells, {}, [](const CellSummary* cell) { return decision_us(*cell); });
+  return {&block, cells[0], cells[1], *soonest};
 }
 
 struct Tally {
@@ -54,14 +53,15 @@ struct Tally {
   double sum_of_logarithms = 0.0;
 };
 
-/// Nothing if no method was measured on all blocks.
-std::optional<GuideCandidate> choose(const Measured& measured) {
+/// Nothing if no method is a candidate on all blocks.
+std::optional<GuideAdvice> choose(GuideAdvice::Group group, const Measured& measured) {
   std::map<std::string, Tally> tallies;  // by canonical chain
   for (const auto& [block, cells] : measured) {
     for (const CellSummary* cell : cells) {
       Tally& tally = tallies[cell->canonical];
-      const double ratio = decision_us(*cell) / decision_us(*cells[0]);
+      const double ratio = cost_ms(*block, *cell) / cost_ms(*block, *cells[0]);
       tally.candidate.culler = cell->culler;
+      tally.candidate.guarantee = cell->guarantee;
       tally.candidate.wins += cell == cells[0] ? 1 : 0;
       tally.sum_of_logarithms += std::log(ratio);
       ++tally.blocks;
@@ -71,14 +71,17 @@ std::optional<GuideCandidate> choose(const Measured& measured) {
       }
     }
   }
-  std::optional<GuideCandidate> best;
+  GuideAdvice advice{group, measured.size(), 0, {}};
   for (auto& [chain, tally] : tallies) {
     if (tally.blocks != measured.size()) continue;
     tally.candidate.mean_ratio =
         std::exp(tally.sum_of_logarithms / static_cast<double>(tally.blocks));
-    if (!best || tally.candidate.mean_ratio < best->mean_ratio) best = tally.candidate;
+    if (advice.eligible == 0 || tally.candidate.mean_ratio < advice.choice.mean_ratio) {
+      advice.choice = tally.candidate;
+    }
+    ++advice.eligible;
   }
-  return best;
+  return advice.eligible == 0 ? std::nullopt : std::optional(advice);
 }
 
 }  // namespace
@@ -87,18 +90,22 @@ double decision_us(const CellSummary& cell) {
   return cell.update_us.median.value + cell.cull_us.median.value;
 }
 
-std::vector<FamilyGuide> make_guides(const std::vector<BlockSummary>& blocks) {
-  std::map<std::string, Measured> families;
+double cost_ms(const BlockSummary& block, const CellSummary& cell) {
+  return block.drawn ? cell.modelled_frame_ms : decision_us(cell) / 1000.0;
+}
+
+std::vector<CullerGuide> make_guides(const std::vector<BlockSummary>& blocks) {
+  std::map<Culls, Measured> kinds;
   for (const BlockSummary& block : blocks) {
     // Times of different machines have no common order.
     if (block.machines.size() > 1) continue;
-    for (auto& [family, cells] : candidates_of(block)) {
-      if (cells.size() >= fewest_methods) families[family].emplace_back(&block, std::move(cells));
+    for (auto& [culls, cells] : candidates_of(block)) {
+      if (cells.size() >= fewest_methods) kinds[culls].emplace_back(&block, std::move(cells));
     }
   }
-  std::vector<FamilyGuide> guides;
-  for (const auto& [family, measured] : families) {
-    FamilyGuide guide{family, {}, {}};
+  std::vector<CullerGuide> guides;
+  for (const auto& [culls, measured] : kinds) {
+    CullerGuide guide{culls, {}, {}};
     Measured still;
     Measured moving;
     for (const auto& entry : measured) {
@@ -106,9 +113,7 @@ std::vector<FamilyGuide> make_guides(const std::vector<BlockSummary>& blocks) {
       (entry.first->moving_objects > 0.0 ? moving : still).push_back(entry);
     }
     const auto advise = [&](GuideAdvice::Group group, const auto& entries) {
-      if (const auto choice = choose(entries)) {
-        guide.advice.push_back({group, entries.size(), *choice});
-      }
+      if (const auto advice = choose(group, entries)) guide.advice.push_back(*advice);
     };
     advise(GuideAdvice::Group::all, measured);
     if (!still.empty() && !moving.empty()) {

@@ -1,4 +1,4 @@
-// Which method of a family should be used: made from what was measured.
+// Which of the methods that cull the same should be used: made from what was measured.
 #pragma once
 
 #include <string>
@@ -11,41 +11,50 @@ namespace vislab {
 /// Time to decide about a frame: update and cull, µs; NaN if not measured.
 double decision_us(const CellSummary& cell);
 
-/// The best of a family on one block. Pointers lead into the blocks.
+/// What a user pays for a frame, ms: modelled_frame_ms where the block is drawn (deciding, and
+/// drawing what is submitted), else decision_us; NaN if not measured.
+double cost_ms(const BlockSummary& block, const CellSummary& cell);
+
+/// The best of a kind on one block. Pointers lead into the blocks.
 struct GuideRow {
   const BlockSummary* block = nullptr;
-  const CellSummary* best = nullptr;        // decides soonest
-  const CellSummary* runner_up = nullptr;   // the next
-  const CellSummary* best_frame = nullptr;  // least frame_ms; null if nothing is drawn
+  const CellSummary* best = nullptr;       // costs least
+  const CellSummary* runner_up = nullptr;  // the next
+  const CellSummary* soonest = nullptr;    // least decision_us
 };
 
 /// How one method fares on a group of blocks, against the best on each.
 struct GuideCandidate {
   std::string culler;
+  Guarantee guarantee = Guarantee::conservative;
   int wins = 0;
-  double mean_ratio = 0.0;   // geometric mean of its decision time / the best's
+  double mean_ratio = 0.0;   // geometric mean of its cost / the best's
   double worst_ratio = 0.0;  // the largest, and where
   const BlockSummary* worst_block = nullptr;
 };
 
 /// The method to take for a group of blocks: the one with the least mean ratio among those that
-/// were measured free of errors on every block of the group.
+/// are candidates on every block of the group.
 struct GuideAdvice {
   enum class Group { all, still, moving } group = Group::all;
   std::size_t blocks = 0;
+  std::size_t eligible = 0;  // candidates on every block
   GuideCandidate choice;
 };
 
-struct FamilyGuide {
-  std::string family;
+struct CullerGuide {
+  Culls culls = Culls::hidden;
   std::vector<GuideRow> rows;
   /// For all blocks; where there are both, for those whose objects are still and those where some
   /// move.
   std::vector<GuideAdvice> advice;
 };
 
-/// One guide for each family that has at least three methods (not chains, not anchors, nothing
-/// erroneous) measured free of errors on some block, from those blocks.
-std::vector<FamilyGuide> make_guides(const std::vector<BlockSummary>& blocks);
+/// One guide for each kind of culling, whatever the families, from the blocks that have at least
+/// three candidates of that kind. A candidate is a method (no chain, no anchor, nothing declared
+/// erroneous) that was measured free of errors. Where nothing is drawn, only methods that submit
+/// at most 1 % more triangles than the fewest are: deciding soon is no merit in one that keeps
+/// everything.
+std::vector<CullerGuide> make_guides(const std::vector<BlockSummary>& blocks);
 
 }  // namespace vislab

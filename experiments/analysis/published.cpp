@@ -25,15 +25,29 @@ double frames_a_second(const toml::table& table, std::string_view key, const std
   return *value;
 }
 
+PublishedRow::Metric metric_of(const toml::table& table, const std::string& file) {
+  const auto name = value_of<std::string>(table, "metric", "a text", file).value_or("frame_ms");
+  if (name == "frame_ms") return PublishedRow::Metric::frame_ms;
+  if (name == "cull_us") return PublishedRow::Metric::cull_us;
+  throw InputError(place(file, table) + ": " +
+                   unknown_name("metric of a [[row]]", name, {"frame_ms", "cull_us"}).what());
+}
+
 PublishedRow read_row(const toml::table& table, const Registry& registry, const std::string& file) {
-  refuse_unknown_keys(
-      table, {"what", "table", "without_fps", "with_fps", "scene", "path", "culler", "against"},
-      "[[row]]", file);
+  refuse_unknown_keys(table,
+                      {"what", "table", "without_fps", "with_fps", "published", "metric", "scene",
+                       "path", "culler", "against"},
+                      "[[row]]", file);
   PublishedRow row;
   row.what = text_of(table, "what", file);
   row.table = text_of(table, "table", file);
-  row.without_fps = frames_a_second(table, "without_fps", file);
-  row.with_fps = frames_a_second(table, "with_fps", file);
+  if (const auto published = value_of<std::string>(table, "published", "a text", file)) {
+    row.published = *published;
+  } else {
+    row.without_fps = frames_a_second(table, "without_fps", file);
+    row.with_fps = frames_a_second(table, "with_fps", file);
+  }
+  row.metric = metric_of(table, file);
   row.scene = text_of(table, "scene", file);
   row.path = value_of<std::string>(table, "path", "a text", file).value_or("");
   const std::string culler = text_of(table, "culler", file);
@@ -66,12 +80,23 @@ PublishedFigures read_figures(const fs::path& path, const Registry& registry) {
   return figures;
 }
 
-const CellSummary* find_cell(const BlockSummary& block, const std::string& chain) {
+/// What the ratio is made of: ÷ none's for frame_ms, in µs for cull_us.
+const Estimate& measure_of(const CellSummary& cell, PublishedRow::Metric metric) {
+  return metric == PublishedRow::Metric::cull_us ? cell.cull_us.median : cell.against_none;
+}
+
+const CellSummary* find_cell(const BlockSummary& block, const std::string& chain,
+                             PublishedRow::Metric metric) {
   const auto found = std::ranges::find_if(block.cells, [&](const CellSummary& cell) {
     return cell.canonical == chain && cell.replicate == 0 &&
-           cell.status == ResultCell::Status::done && cell.against_none.measured();
+           cell.status == ResultCell::Status::done && measure_of(cell, metric).measured();
   });
   return found == block.cells.end() ? nullptr : &*found;
+}
+
+/// Orders the blocks that may stand for a row: the more the better.
+auto weight_of(const BlockSummary& block) {
+  return std::pair(block.frames, block.viewport.width * block.viewport.height);
 }
 
 }  // namespace
@@ -89,21 +114,24 @@ std::vector<PublishedFigures> load_published(const fs::path& folder, const Regis
 }
 
 OwnFigure own_figure(const PublishedRow& row, const std::vector<BlockSummary>& blocks) {
+  OwnFigure own;
   for (const BlockSummary& block : blocks) {
     if (block.scene != row.scene || (!row.path.empty() && block.path != row.path)) continue;
-    const CellSummary* const cell = find_cell(block, row.culler);
-    const CellSummary* const against = find_cell(block, row.against);
+    const CellSummary* const cell = find_cell(block, row.culler, row.metric);
+    const CellSummary* const against = find_cell(block, row.against, row.metric);
     if (cell == nullptr || against == nullptr) continue;
-    const Estimate& method = cell->against_none;
-    if (against->canonical == "none") {
-      return {&block, cell, {1.0 / method.value, 1.0 / method.high, 1.0 / method.low}};
-    }
-    const Estimate& other = against->against_none;
-    return {&block,
-            cell,
-            {other.value / method.value, other.low / method.high, other.high / method.low}};
+    if (own.block != nullptr && weight_of(block) <= weight_of(*own.block)) continue;
+    const Estimate& method = measure_of(*cell, row.metric);
+    const Estimate& other = measure_of(*against, row.metric);
+    // none's ratio to itself is 1, without an interval.
+    const bool paired =
+        row.metric == PublishedRow::Metric::frame_ms && against->canonical == "none";
+    own = {&block, cell,
+           paired ? Estimate{1.0 / method.value, 1.0 / method.high, 1.0 / method.low}
+                  : Estimate{other.value / method.value, other.low / method.high,
+                             other.high / method.low}};
   }
-  return {};
+  return own;
 }
 
 }  // namespace vislab

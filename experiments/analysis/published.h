@@ -7,8 +7,12 @@
 //   what = "mixed scene, camera moving"
 //   table = "5.2"
 //   without_fps = 58.92            frames a second without culling (or of what `against` stands
-//   for) with_fps = 66.21 scene = "mixed"                what stands for it here: scene, path, path
-//   = "mixed_moving"          "" or left out: any path culler = "frustum.two_step"    and method
+//   with_fps = 66.21               for), and with; or instead of both
+//   published = "1.4, at most 3"   the ratio without ÷ with as the source words it
+//   metric = "frame_ms"            what stands for it here: a ratio of frame_ms or of cull_us
+//   scene = "mixed"                of this scene, path ("" or left out: any path)
+//   path = "mixed_moving"
+//   culler = "frustum.two_step"    and method
 //   against = "none"               what it is compared with; none if left out
 #pragma once
 
@@ -27,8 +31,10 @@ struct PublishedRow {
   std::string scene, path;
   std::string culler, against;                        // canonical
   std::string short_culler = {}, short_against = {};  // the same as tables show them
+  std::string published = {};                         // instead of frames a second
+  enum class Metric { frame_ms, cull_us } metric = Metric::frame_ms;
 
-  /// How many times as many frames a second as without.
+  /// How many times as many frames a second as without; not with `published`.
   double ratio() const { return with_fps / without_fps; }
 };
 
@@ -46,12 +52,14 @@ std::vector<PublishedFigures> load_published(const std::filesystem::path& folder
 struct OwnFigure {
   const BlockSummary* block = nullptr;
   const CellSummary* cell = nullptr;
-  /// frame_ms of `against` / frame_ms of the culler. Against none paired by frame and round;
-  /// against another method the quotient of two such ratios, with the widest interval that they
-  /// allow.
+  /// The row's metric of `against` / that of the culler. frame_ms against none is paired by frame
+  /// and round; else it is the quotient of two such ratios, or of the medians of cull_us, with the
+  /// widest interval that they allow.
   Estimate ratio = Estimate::none();
 };
 
+/// Of several blocks of the row's scene and path the one with the most frames, then with the most
+/// pixels, then the first.
 OwnFigure own_figure(const PublishedRow& row, const std::vector<BlockSummary>& blocks);
 
 }  // namespace vislab

@@ -156,6 +156,7 @@ CellSummary summarise_cell(const JudgedCell& judged) {
   summary.guarantee = cell.guarantee;
   summary.repeatability = cell.repeatability;
   summary.granularity = cell.granularity;
+  summary.culls = cell.culls;
   summary.rounds = static_cast<int>(cell.rounds.size());
   if (const auto found = cell.context.find("machine"); found != cell.context.end()) {
     summary.machine = found->second;

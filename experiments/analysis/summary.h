@@ -31,6 +31,7 @@ struct CellSummary {
   Guarantee guarantee = Guarantee::conservative;
   Repeatability repeatability = Repeatability::stateless;
   Granularity granularity = Granularity::object;
+  Culls culls = Culls::hidden;
   int rounds = 0;
   std::string machine;  // id of the one that measured it
 

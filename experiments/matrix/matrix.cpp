@@ -34,7 +34,7 @@ struct Adjustment {
 struct Description {
   std::string text;
   PassSettings pass;
-  std::vector<std::string> cullers, scenes;
+  std::vector<std::string> cullers, optional_cullers, scenes;
   std::vector<std::string> paths{""};
   std::vector<Viewport> resolutions{Viewport{}};
   std::vector<int> frames{60};
@@ -44,9 +44,13 @@ struct Description {
 };
 
 void read_lists(const toml::table& lists, Description& description, const std::string& file) {
-  refuse_unknown_keys(lists, {"culler", "scene", "path", "resolution", "frames"}, "[lists]", file);
+  refuse_unknown_keys(lists, {"culler", "optional_culler", "scene", "path", "resolution", "frames"},
+                      "[lists]", file);
   if (const auto* node = lists.get("culler"))
     description.cullers = text_list(*node, "culler", file);
+  if (const auto* node = lists.get("optional_culler")) {
+    description.optional_cullers = text_list(*node, "optional_culler", file);
+  }
   if (const auto* node = lists.get("scene")) description.scenes = text_list(*node, "scene", file);
   if (const auto* node = lists.get("path")) description.paths = text_list(*node, "path", file);
   if (const auto* node = lists.get("resolution")) {
@@ -150,6 +154,39 @@ Description read_description(const fs::path& path, const fs::path& folder, int d
   return description;
 }
 
+/// Does the build have every stage of the chain? Throws InputError if the text is no chain.
+bool is_registered(const std::string& chain, const Registry& registry) {
+  return std::ranges::all_of(parse_chain(chain), [&](const CullerSpec& stage) {
+    return registry.entries().contains(stage.name);
+  });
+}
+
+/// A chain as it is written, which [[exclude]] may name, and in full.
+struct WantedChain {
+  std::string written, canonical;
+};
+
+/// Those of the lists; optional ones that the build does not have go to `absent`.
+std::vector<WantedChain> chains_of(const Description& description, const Registry& registry,
+                                   const std::string& file, std::vector<std::string>& absent) {
+  std::vector<WantedChain> chains;
+  const auto add = [&](const std::string& culler, bool optional) {
+    try {
+      if (optional && !is_registered(culler, registry)) {
+        absent.push_back(culler);
+        return;
+      }
+      registry.make(culler);
+      chains.push_back({culler, registry.canonical(culler)});
+    } catch (const InputError& error) {
+      throw InputError(file + ": " + error.what());
+    }
+  };
+  for (const std::string& culler : description.cullers) add(culler, false);
+  for (const std::string& culler : description.optional_cullers) add(culler, true);
+  return chains;
+}
+
 std::string to_text(const Viewport& viewport) {
   return std::to_string(viewport.width) + "x" + std::to_string(viewport.height);
 }
@@ -213,16 +250,9 @@ Matrix load_matrix(const std::string& name_or_file, const fs::path& folder,
   if (description.cullers.empty() || description.scenes.empty()) {
     throw InputError(file.string() + ": [lists] must name at least one culler and one scene");
   }
-  Matrix matrix{file.stem().string(), description.text, {}};
-  std::vector<std::string> chains;
-  for (const std::string& culler : description.cullers) {
-    try {
-      registry.make(culler);
-      chains.push_back(registry.canonical(culler));
-    } catch (const InputError& error) {
-      throw InputError(file.string() + ": " + error.what());
-    }
-  }
+  Matrix matrix{file.stem().string(), description.text, {}, {}};
+  const std::vector<WantedChain> chains =
+      chains_of(description, registry, file.string(), matrix.absent);
   for (const std::string& scene : description.scenes) {
     for (const std::string& path : paths_of(scene, description)) {
       for (const Viewport& viewport : description.resolutions) {
@@ -244,13 +274,13 @@ Matrix load_matrix(const std::string& name_or_file, const fs::path& folder,
             block.timeout_s = adjustment.timeout_s.value_or(block.timeout_s);
           }
           std::vector<std::string> wanted;
-          for (std::size_t i = 0; i < chains.size(); ++i) {
+          for (const WantedChain& chain : chains) {
             const bool excluded =
                 std::ranges::any_of(description.excluded, [&](const Pattern& pattern) {
-                  return fits(pattern, block) && (matches(pattern.culler, description.cullers[i]) ||
-                                                  matches(pattern.culler, chains[i]));
+                  return fits(pattern, block) && (matches(pattern.culler, chain.written) ||
+                                                  matches(pattern.culler, chain.canonical));
                 });
-            if (!excluded) wanted.push_back(chains[i]);
+            if (!excluded) wanted.push_back(chain.canonical);
           }
           if (wanted.empty()) continue;
           block.cullers = with_anchors(wanted, registry);
@@ -269,7 +299,7 @@ Matrix single_block(const std::string& chain, const Block& settings, const Regis
   registry.make(chain);
   Block block = settings;
   block.cullers = with_anchors({registry.canonical(chain)}, registry);
-  return {"", "", {std::move(block)}};
+  return {"", "", {std::move(block)}, {}};
 }
 
 std::vector<std::pair<std::string, std::string>> list_matrices(const fs::path& folder) {

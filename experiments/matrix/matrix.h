@@ -9,6 +9,7 @@
 //   timeout_s = 300                for one cell's pass over the path
 //   [lists]                        every combination is one cell
 //   culler = ["frustum.flat", "frustum.flat > backface.polygon"]
+//   optional_culler = ["peer.bullet"]   left out, and said so, where this build does not have them
 //   scene = ["dragon"]
 //   path = [""]                    "" = the scene's own
 //   resolution = ["512x512"]
@@ -65,6 +66,7 @@ struct Matrix {
   std::string name;
   std::string description;
   std::vector<Block> blocks;
+  std::vector<std::string> absent;  // optional cullers that this build does not have, as written
 };
 
 /// The chains that stand in every block, canonical, without the A/A control.

@@ -53,6 +53,10 @@ void add_named(Work& work, const std::string& name, const Lab& lab,
     throw unknown_name("matrix, stress sweep or file", name, known);
   }
   const Matrix matrix = load_matrix(name, lab.matrices, lab.cullers);
+  for (const std::string& culler : matrix.absent) {
+    std::cerr << "vislab: " << name << " goes on without " << culler
+              << ": not in this build (README.md: Peers)\n";
+  }
   work.blocks.insert(work.blocks.end(), matrix.blocks.begin(), matrix.blocks.end());
 }
 

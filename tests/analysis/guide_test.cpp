@@ -14,6 +14,8 @@ CellSummary method(const std::string& name, double cull_us, double frame_ms) {
   cell.cull_us.median = {cull_us, cull_us, cull_us};
   cell.update_us.median = {1.0, 1.0, 1.0};
   cell.frame_ms.median = {frame_ms, frame_ms, frame_ms};
+  cell.modelled_frame_ms = frame_ms;
+  cell.culls = Culls::outside_frustum;
   cell.against_none = {frame_ms / 10.0, 0.9 * frame_ms / 10.0, 1.1 * frame_ms / 10.0};
   return cell;
 }
@@ -28,18 +30,47 @@ BlockSummary block_with(const std::string& scene, std::vector<CellSummary> cells
   return block;
 }
 
-TEST(Guide, NamesTheSoonestRightMethodAndTheNext) {
+/// Decision times only: all submit the same.
+BlockSummary undrawn(BlockSummary block) {
+  block.drawn = false;
+  return block;
+}
+
+TEST(Guide, NamesTheRightMethodThatCostsLeastAndTheNextAndTheSoonest) {
   const auto guides =
       make_guides({block_with("s", {method("frustum.a", 9.0, 2.0), method("frustum.b", 4.0, 3.0),
                                     method("frustum.c", 19.0, 4.0)})});
   ASSERT_EQ(guides.size(), 1U);
-  EXPECT_EQ(guides[0].family, "frustum");
+  EXPECT_EQ(guides[0].culls, Culls::outside_frustum);
   ASSERT_EQ(guides[0].rows.size(), 1U);
-  EXPECT_EQ(guides[0].rows[0].best->culler, "frustum.b");
-  EXPECT_EQ(guides[0].rows[0].runner_up->culler, "frustum.a");
-  EXPECT_EQ(guides[0].rows[0].best_frame->culler, "frustum.a");
+  EXPECT_EQ(guides[0].rows[0].best->culler, "frustum.a");
+  EXPECT_EQ(guides[0].rows[0].runner_up->culler, "frustum.b");
+  EXPECT_EQ(guides[0].rows[0].soonest->culler, "frustum.b");
   ASSERT_EQ(guides[0].advice.size(), 1U);
-  EXPECT_EQ(guides[0].advice[0].choice.culler, "frustum.b");
+  EXPECT_EQ(guides[0].advice[0].choice.culler, "frustum.a");
+  EXPECT_EQ(guides[0].advice[0].eligible, 3U);
+}
+
+TEST(Guide, WhereNothingIsDrawnAMethodThatHardlyCullsCannotWin) {
+  std::vector<CellSummary> cells{method("frustum.lazy", 1.0, 1.0), method("frustum.a", 9.0, 1.0),
+                                 method("frustum.b", 8.0, 1.0), method("frustum.c", 7.0, 1.0)};
+  for (CellSummary& cell : cells) cell.submitted_triangles = 1000.0;
+  cells[0].submitted_triangles = 1011.0;
+  cells[2].submitted_triangles = 1009.0;
+  const auto guides = make_guides({undrawn(block_with("s", cells))});
+  ASSERT_EQ(guides.size(), 1U);
+  EXPECT_EQ(guides[0].rows[0].best->culler, "frustum.c");
+  EXPECT_EQ(guides[0].advice.at(0).eligible, 3U);
+}
+
+TEST(Guide, MethodsOfAllFamiliesThatCullTheSameCompete) {
+  CellSummary other = method("backface.x", 1.0, 1.0);
+  other.culls = Culls::back_faces;
+  const auto guides =
+      make_guides({block_with("s", {method("frustum.a", 9.0, 4.0), method("frustum.b", 9.0, 3.0),
+                                    method("peer.c", 9.0, 2.0), other})});
+  ASSERT_EQ(guides.size(), 1U);
+  EXPECT_EQ(guides[0].rows[0].best->culler, "peer.c");
 }
 
 TEST(Guide, MethodsWithErrorsChainsAnchorsAndNegativeControlsDoNotCount) {
@@ -73,7 +104,7 @@ TEST(Guide, AdviceIsTheLeastMeanRatioAndTellsMovingScenesApart) {
       block_with("moving", {method("frustum.a", 999.0, 1.0), method("frustum.b", 9.0, 1.0),
                             method("frustum.c", 19.0, 1.0)});
   moving.moving_objects = 50.0;
-  const auto guides = make_guides({still, moving});
+  const auto guides = make_guides({undrawn(still), undrawn(moving)});
   ASSERT_EQ(guides.at(0).advice.size(), 3U);
   EXPECT_EQ(guides[0].advice[0].choice.culler, "frustum.c");
   EXPECT_EQ(guides[0].advice[0].choice.wins, 0);
@@ -102,8 +133,23 @@ TEST(Published, OwnRatiosAreThoseOfTheRowsSceneAndMethods) {
   EXPECT_GT(against.ratio.high, 0.4);
   row.path = "";
   EXPECT_NE(own_figure(row, with_none).cell, nullptr) << "any path";
+  row.metric = PublishedRow::Metric::cull_us;
+  row.culler = "frustum.b";
+  row.against = "none";
+  EXPECT_NEAR(own_figure(row, with_none).ratio.value, 1.0 / 9.0, 1e-12);
   row.path = "another way";
   EXPECT_EQ(own_figure(row, with_none).cell, nullptr);
+}
+
+TEST(Published, TheBlockWithTheMostFramesStandsForARowInAnyOrder) {
+  BlockSummary brief = block_with("s", {method("frustum.a", 9.0, 5.0), method("none", 1.0, 10.0)});
+  brief.frames = 12;
+  BlockSummary full = brief;
+  full.frames = 24;
+  full.cells[0].against_none = {0.25, 0.2, 0.3};
+  const PublishedRow row{"w", "t", 10.0, 20.0, "s", "way", "frustum.a", "none"};
+  EXPECT_EQ(own_figure(row, {brief, full}).block->frames, 24);
+  EXPECT_DOUBLE_EQ(own_figure(row, {full, brief}).ratio.value, 4.0);
 }
 
 }  // namespace

@@ -54,6 +54,19 @@ TEST_F(MatrixFile, EveryBlockHasNoneTwiceAndBothOraclesOnce) {
   EXPECT_EQ(count_of(block, registry_.canonical("oracle[level=triangle]")), 1U);
 }
 
+TEST_F(MatrixFile, OptionalCullersMayBeAbsentButAreHeldToTheirParameters) {
+  const Matrix matrix = load(
+      "[lists]\nculler = [\"frustum.flat\"]\nscene = [\"a\"]\n"
+      "optional_culler = [\"frustum.bvh\", \"peer.of_nobody[x=1]\"]\n");
+  EXPECT_EQ(count_of(matrix.blocks.at(0), registry_.canonical("frustum.bvh")), 1U);
+  EXPECT_EQ(matrix.blocks[0].cullers.size(), 6U);
+  EXPECT_EQ(matrix.absent, std::vector<std::string>{"peer.of_nobody[x=1]"});
+  EXPECT_NE(refusal("[lists]\nculler = [\"none\"]\nscene = [\"a\"]\n"
+                    "optional_culler = [\"frustum.flat[test=cone]\"]\n")
+                .find("cone"),
+            std::string::npos);
+}
+
 TEST_F(MatrixFile, SpellingsOfOneChainAreOneCell) {
   const Matrix matrix = load(
       "[lists]\nculler = [\"frustum.flat\", \"frustum.flat[test=vertex]\", \" frustum.flat \"]\n"

@@ -84,12 +84,18 @@ TEST(GuideSection, GivesOneSentenceOfAdviceAndARowAScene) {
        {std::pair{"frustum.a", 40.0}, {"frustum.b", 20.0}, {"frustum.c", 60.0}}) {
     CellSummary cell = fabricated_cell(name, 0.3, 0, 1.0);
     cell.cull_us = fabricated_time(us);
+    cell.modelled_frame_ms = us / 10.0;
+    cell.culls = Culls::outside_frustum;
+    cell.guarantee = Guarantee::approximate;
     block.cells.push_back(cell);
   }
   const std::vector<Fields> guides = guide_fields({block});
   ASSERT_EQ(guides.size(), 1U);
   EXPECT_EQ(guides[0].lists.at("advice")[0].values.at("sentence"),
-            "On the 1 scene, take `frustum.b`: it decides soonest on 1 of them.");
+            "Of the 3 methods to choose from on the one scene and path, take `frustum.b` (which "
+            "promises no more than *approximate*): nothing costs less there.");
+  EXPECT_EQ(guides[0].values.at("kind"), "view-frustum");
+  EXPECT_EQ(guides[0].lists.at("rows")[0].values.at("best_ms"), "2.00");
   EXPECT_EQ(guides[0].lists.at("rows")[0].values.at("runner_up"), "`frustum.a`");
   EXPECT_EQ(guides[0].lists.at("rows")[0].values.at("moving"), "–");
 }
@@ -108,6 +114,8 @@ TEST(PublishedSection, RowsWithoutCellsSaySoAndSourcesWithoutAnyAreLeftOut) {
   EXPECT_EQ(rows[0].values.at("published"), "1.20");
   EXPECT_NE(rows[0].values.at("own").find("2.00"), std::string::npos);
   EXPECT_EQ(rows[1].values.at("own"), "not run");
+  EXPECT_EQ(rows[0].values.at("scene"), R"(mixed\, orbit\, 512 × 512\, 60 frames)");
+  EXPECT_EQ(rows[1].values.at("scene"), R"(mixed\, still)");
   figures.rows.erase(figures.rows.begin());
   EXPECT_TRUE(published_fields({figures}, {block}).empty());
 }
