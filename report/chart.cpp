@@ -34,11 +34,17 @@ constexpr const char* zero_band_colour = "#EEF2F6";
 constexpr int none_shape = 1, none_again_shape = 2;  // plus and cross
 constexpr std::array<int, 4> oracle_shapes{6, 4, 8, 12};
 
+// With more methods than this only those on a hull and the anchors are named; the others are dots.
+constexpr std::size_t most_named = 24;
+constexpr const char* other_colour = "#9DB4C8";
+constexpr int other_shape = 7;
+
 struct Mark {
   const CellSummary* cell = nullptr;
   std::size_t number = 0;  // in charts and tables
   std::string colour;
   int shape = 0;
+  bool named = true;  // numbered, in the legend, with its interval
 };
 
 struct Panel {
@@ -83,8 +89,15 @@ class ChartWriter {
     }
     x_axis_ = positive_axis(ends);
     add_panels();
+    if (marks_.size() > most_named) name_hulls();
     for (const Mark& mark : marks_) {
+      if (!mark.named) continue;
+      legend_marks_.push_back(mark);
       legend_texts_.push_back(std::to_string(mark.number) + "  " + mark.cell->culler);
+    }
+    if (legend_marks_.size() < marks_.size()) {
+      legend_marks_.push_back({nullptr, 0, other_colour, other_shape, false});
+      legend_texts_.emplace_back("other methods: see the tables");
     }
     legend_texts_.emplace_back("Pareto hull of the methods");
     if (none_x_ > 0.0) {
@@ -122,6 +135,21 @@ class ChartWriter {
     const double most = over.values.empty() ? 0.0 : std::ranges::max(over.values);
     over.axis = most > 0.0 ? logarithmic_axis(over.values, most, "0") : positive_axis({1.0});
     panels_ = {std::move(errors), std::move(over)};
+  }
+
+  /// Leaves names to the anchors and to what lies on a hull.
+  void name_hulls() {
+    for (Mark& mark : marks_) mark.named = mark.cell->anchor;
+    for (std::size_t panel = 0; panel < panels_.size(); ++panel) {
+      for (const std::size_t i : hull_marks(panel)) marks_[i].named = true;
+    }
+    std::size_t methods = 0;
+    for (Mark& mark : marks_) {
+      if (mark.cell->anchor) continue;
+      const Look look = mark.named ? method_look(methods++) : Look{other_colour, other_shape};
+      mark.colour = look.colour;
+      mark.shape = look.shape;
+    }
   }
 
   double pixel_x(std::size_t panel, double value) const {
@@ -171,7 +199,7 @@ class ChartWriter {
            << x_[i].high << '\n';
     }
     out_ << "END\n";
-    plot_points("1:2:3:4 with xerrorbars");
+    plot_points(marks_, "1:2:3:4 with xerrorbars");
   }
 
   void write_line(const ChartBox& line, const char* style) {
@@ -180,25 +208,34 @@ class ChartWriter {
          << line.top / chart_height_ << " nohead " << style << " back\n";
   }
 
-  /// The hull of all methods that could be used (the oracles and the control are not among them) as
-  /// a staircase: what lies to the right of it and above it is beaten by some method.
-  std::vector<ChartBox> hull_steps(std::size_t index, const ChartBox& frame) const {
+  /// The hull of all methods that could be used (the oracles and the control are not among them).
+  std::vector<std::size_t> hull_marks(std::size_t panel) const {
+    std::vector<std::size_t> usable;
     std::vector<double> x;
     std::vector<double> y;
     for (std::size_t i = 0; i < marks_.size(); ++i) {
       const CellSummary& cell = *marks_[i].cell;
       if (cell.anchor && !(cell.canonical == "none" && cell.replicate == 0)) continue;
-      x.push_back(pixel_x(index, x_[i].value));
-      y.push_back(pixel_y(panels_[index], panels_[index].values[i]));
+      usable.push_back(i);
+      x.push_back(x_axis_.position(x_[i].value));
+      y.push_back(panels_[panel].axis.position(panels_[panel].values[i]));
     }
+    std::vector<std::size_t> hull = pareto_hull(x, y);
+    for (std::size_t& i : hull) i = usable[i];
+    return hull;
+  }
+
+  /// The hull as a staircase: what lies to the right of it and above it is beaten by some method.
+  std::vector<ChartBox> hull_steps(std::size_t index, const ChartBox& frame) const {
+    const auto across = [&](std::size_t mark) { return pixel_x(index, x_[mark].value); };
     std::vector<ChartBox> steps;
     double from = frame.top;
-    const std::vector<std::size_t> hull = pareto_hull(x, y);
+    const std::vector<std::size_t> hull = hull_marks(index);
     for (std::size_t i = 0; i < hull.size(); ++i) {
-      const double px = x[hull[i]];
-      const double py = y[hull[i]];
+      const double px = across(hull[i]);
+      const double py = pixel_y(panels_[index], panels_[index].values[hull[i]]);
       steps.push_back({px, py, px, from});
-      steps.push_back({px, py, i + 1 < hull.size() ? x[hull[i + 1]] : frame.right, py});
+      steps.push_back({px, py, i + 1 < hull.size() ? across(hull[i + 1]) : frame.right, py});
       from = py;
     }
     return steps;
@@ -207,6 +244,7 @@ class ChartWriter {
   void write_numbers(std::size_t index, const std::vector<ChartBox>& lines) {
     const Panel& panel = panels_[index];
     std::vector<LabelRequest> requests;
+    std::vector<std::string> texts;
     std::vector<ChartBox> obstacles;
     for (const ChartBox& line : lines) {
       obstacles.push_back({line.left - 1.0, line.bottom - 1.0, line.right + 1.0, line.top + 1.0});
@@ -214,9 +252,11 @@ class ChartWriter {
     for (std::size_t i = 0; i < marks_.size(); ++i) {
       const double x = pixel_x(index, x_[i].value);
       const double y = pixel_y(panel, panel.values[i]);
-      const std::string text = std::to_string(marks_[i].number);
-      requests.push_back({x, y, digit_width * static_cast<double>(text.size()), label_height});
       obstacles.push_back({x - mark_radius, y - mark_radius, x + mark_radius, y + mark_radius});
+      if (!marks_[i].named) continue;
+      texts.push_back(std::to_string(marks_[i].number));
+      requests.push_back(
+          {x, y, digit_width * static_cast<double>(texts.back().size()), label_height});
       obstacles.push_back(
           {pixel_x(index, x_[i].low), y - 1.0, pixel_x(index, x_[i].high), y + 1.0});
     }
@@ -226,9 +266,8 @@ class ChartWriter {
     for (std::size_t i = 0; i < labels.size(); ++i) {
       const PlacedLabel& label = labels[i];
       if (label.leader) write_leader(requests[i], label);
-      out_ << "set label " << quoted(std::to_string(marks_[i].number)) << " at screen "
-           << label.x / chart_width << ',' << label.y / chart_height_
-           << " center font ',10' front\n";
+      out_ << "set label " << quoted(texts[i]) << " at screen " << label.x / chart_width << ','
+           << label.y / chart_height_ << " center font ',10' front\n";
     }
   }
 
@@ -256,25 +295,30 @@ class ChartWriter {
       const double middle = legend_.middle(i);
       out_ << "set label " << quoted(legend_texts_[i]) << " at first " << left + legend_text_left
            << ',' << middle << " left font ',10.5'\n";
-      if (i < marks_.size()) continue;
+      if (i < legend_marks_.size()) continue;
       out_ << "set arrow from first " << left << ',' << middle << " to first " << left + 18.0 << ','
-           << middle << " nohead " << (i == marks_.size() ? hull_style : none_style) << '\n';
+           << middle << " nohead " << (i == legend_marks_.size() ? hull_style : none_style) << '\n';
     }
     out_ << "$points << END\n";
-    for (std::size_t i = 0; i < marks_.size(); ++i) {
+    for (std::size_t i = 0; i < legend_marks_.size(); ++i) {
       out_ << legend_.left(i) + 9.0 << ' ' << legend_.middle(i) << '\n';
     }
     out_ << "END\n";
-    plot_points("1:2 with points");
+    plot_points(legend_marks_, "1:2 with points");
   }
 
-  /// Plots the lines of $points, each with the look of its mark.
-  void plot_points(const std::string& how) {
-    out_ << "plot";
-    for (std::size_t i = 0; i < marks_.size(); ++i) {
-      out_ << (i == 0 ? " " : ", \\\n  ") << "$points every ::" << i << "::" << i << " using "
-           << how << " notitle pt " << marks_[i].shape << " ps 0.9 lw 1.3 lc rgb '"
-           << marks_[i].colour << "'";
+  /// Plots the lines of $points, each with the look of its mark; those without a name as dots below
+  /// the others.
+  void plot_points(const std::vector<Mark>& marks, const std::string& how) {
+    const char* separator = "plot ";
+    for (const bool named : {false, true}) {
+      for (std::size_t i = 0; i < marks.size(); ++i) {
+        if (marks[i].named != named) continue;
+        out_ << separator << "$points every ::" << i << "::" << i << " using "
+             << (named ? how : "1:2 with points") << " notitle pt " << marks[i].shape << " ps "
+             << (named ? 0.9 : 0.5) << " lw 1.3 lc rgb '" << marks[i].colour << "'";
+        separator = ", \\\n  ";
+      }
     }
     out_ << '\n';
   }
@@ -286,6 +330,7 @@ class ChartWriter {
   double none_x_ = 0.0;
   ChartAxis x_axis_;
   std::vector<Panel> panels_;
+  std::vector<Mark> legend_marks_;
   std::vector<std::string> legend_texts_;
   Legend legend_;
   double chart_height_ = 0.0, panel_bottom_ = 0.0, panel_height_ = 0.0;

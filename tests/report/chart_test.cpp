@@ -82,6 +82,19 @@ TEST(Chart, OnlyJudgedAndTimedCellsHaveAPoint) {
   EXPECT_EQ(charted_cells(block).size(), 2U);
 }
 
+TEST(Chart, OfManyMethodsOnlyTheAnchorsAndTheHullsAreNamed) {
+  BlockSummary block = fabricated_block("made_up");
+  for (int i = 0; i < 40; ++i) {
+    block.cells.push_back(fabricated_cell("frustum.m" + std::to_string(i), 0.5 + 0.01 * i, 0, 2.0));
+  }
+  const std::string script = chart_script(block, "x.svg");
+  EXPECT_NE(script.find("frustum.m0"), std::string::npos);
+  EXPECT_EQ(script.find("frustum.m1"), std::string::npos);
+  EXPECT_NE(script.find("other methods"), std::string::npos);
+  block.cells.resize(20);
+  EXPECT_NE(chart_script(block, "x.svg").find("frustum.m1"), std::string::npos);
+}
+
 TEST(Chart, ScriptsSayHowManyPixelsZeroIsOf) {
   EXPECT_NE(chart_script(fabricated_block("made_up"), "x.svg").find("0 of\\n15,728,640"),
             std::string::npos);
