@@ -15,6 +15,7 @@ constexpr double panel_left = 92.0, panel_width = 568.0, panel_height = 150.0;
 constexpr double y_title_left = 10.0;
 constexpr double axis_height = 50.0;  // tick labels and title below the panel
 constexpr double top_margin = 10.0;
+constexpr double digit_width = 6.5, tick_gap = 8.0;  // of tick labels
 /// Lines that lie on each other are told apart by moving each a little along the dial.
 constexpr double sidestep = 0.024;  // of the distance between two values
 constexpr const char* limit_style = "dt (2,4) lw 1.2 lc rgb '#777777'";
@@ -69,6 +70,19 @@ class SweepChart {
 
   std::string y_title() const { return result_.sweep.figure_name(); }
 
+  /// How many values apart the labels stand, so that labels do not run into each other.
+  static std::size_t values_per_label(const SweepDial& dial) {
+    std::size_t longest = 0;
+    for (const std::string& text : dial.texts) longest = std::max(longest, text.size());
+    const double room = panel_width / static_cast<double>(dial.texts.size());
+    const double needed = digit_width * static_cast<double>(longest) + tick_gap;
+    const auto least = static_cast<std::size_t>(std::ceil(needed / room));
+    for (const std::size_t round : {1, 2, 5, 10, 20, 50}) {
+      if (round >= least) return round;
+    }
+    return least;
+  }
+
   void write_panel(double bottom) {
     const SweepDial& dial = result_.sweep.dial;
     const auto values = static_cast<double>(dial.values.size());
@@ -82,7 +96,7 @@ class SweepChart {
     ChartAxis x;
     x.low = -0.5;
     x.high = values - 0.5;
-    for (std::size_t i = 0; i < dial.texts.size(); ++i) {
+    for (std::size_t i = 0; i < dial.texts.size(); i += values_per_label(dial)) {
       x.ticks.emplace_back(static_cast<double>(i), dial.texts[i]);
     }
     set_axis(out_, 'x', x);

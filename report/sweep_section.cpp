@@ -20,6 +20,7 @@ std::string break_text(const Sweep& sweep, const SweepVerdict& verdict) {
     return at + ", where it failed: " + markdown_text(point.reason);
   }
   if (!verdict.was_measured()) return "not run";
+  if (!verdict.missing_counter.empty()) return markdown_text(verdict.missing_counter);
   if (!verdict.is_complete) return "not all values were measured";
   return "none within " + in_unit(dial, 0) + " to " + in_unit(dial, dial.texts.size() - 1);
 }
@@ -64,7 +65,8 @@ std::string limit_text(const Sweep& sweep) {
   if (limit.metric == "false_px") {
     return metric + " of 0, for approximate methods 1 % of the pixels";
   }
-  return metric + ", by its usual limit";
+  if (may_double(limit.metric)) return metric + " of at most twice that at the first value";
+  return metric + " of 0";
 }
 
 Fields method_row(const Sweep& sweep, const SweepVerdict& verdict) {

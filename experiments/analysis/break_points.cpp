@@ -28,32 +28,35 @@ SweepPoint point_of(const CellSummary* cell, const SweepLimit& limit) {
   if (cell->status != ResultCell::Status::done || !cell->judged) return point;
   point.state = State::measured;
   point.figure = cell->metric(limit.metric);
+  point.guarantee = cell->guarantee;
   point.false_px = cell->false_px;
   point.false_jittered = cell->false_jittered;
   return point;
-}
-
-bool grows_with_the_scene(const std::string& metric) {
-  if (metric == "over" || metric == "over_objects") return true;
-  const auto known = std::ranges::find(metrics(), metric, &Metric::name);
-  return known != metrics().end() && (known->unit == "us" || known->unit == "ms");
 }
 
 double highest_allowed(const SweepLimit& limit, Guarantee guarantee, double first,
                        std::uint64_t pixels) {
   if (limit.at_most) return *limit.at_most;
   if (limit.at_most_ratio) return *limit.at_most_ratio * first;
-  if (grows_with_the_scene(limit.metric)) return default_ratio * first;
+  if (may_double(limit.metric)) return default_ratio * first;
   if (limit.metric == "false_px" && guarantee == Guarantee::approximate) {
     return approximate_share * static_cast<double>(pixels);
   }
   return 0.0;
 }
 
-bool breaks_a_promise(const SweepPoint& point, Guarantee guarantee) {
+bool breaks_a_promise(const SweepPoint& point) {
   if (point.state != State::measured) return false;
-  if (guarantee == Guarantee::conservative) return point.false_px + point.false_jittered > 0;
-  return guarantee == Guarantee::image_exact && point.false_px > 0;
+  if (point.guarantee == Guarantee::conservative) return point.false_px + point.false_jittered > 0;
+  return point.guarantee == Guarantee::image_exact && point.false_px > 0;
+}
+
+/// What to say of a measured cell without the counter that the sweep asks for.
+std::string without_counter(const CellSummary& cell, const std::string& counter) {
+  std::string known;
+  for (const auto& [name, value] : cell.counters) known += (known.empty() ? "" : ", ") + name;
+  return cell.culler + " has no counter '" + counter + "'; it has " +
+         (known.empty() ? "none" : known);
 }
 
 Agreement agreement_of(const SweepVerdict& verdict, const SweepDial& dial) {
@@ -87,6 +90,10 @@ SweepVerdict verdict_on(const Sweep& sweep, const SweepMethod& method, const Cel
     if (cell == nullptr) continue;
     verdict.guarantee = std::max(verdict.guarantee, cell->guarantee);
     if (pixels == 0) pixels = cell->pixels;
+    const bool measured = verdict.points.back().state == State::measured;
+    if (measured && sweep.limit.is_counter && !cell->counters.contains(sweep.limit.metric)) {
+      verdict.missing_counter = without_counter(*cell, sweep.limit.metric);
+    }
   }
   const std::vector<SweepPoint>& points = verdict.points;
   verdict.limit = highest_allowed(sweep.limit, verdict.guarantee, points.front().figure, pixels);
@@ -101,7 +108,7 @@ SweepVerdict verdict_on(const Sweep& sweep, const SweepMethod& method, const Cel
         verdict.is_complete = false;
       }
     }
-    if (!verdict.broken_promise && breaks_a_promise(point, verdict.guarantee)) {
+    if (!verdict.broken_promise && breaks_a_promise(point)) {
       verdict.broken_promise = i;
     }
     if (!measured) continue;
@@ -130,6 +137,19 @@ SweepResult find_break_points(const Sweep& sweep, const CellAtValue& cell) {
     result.verdicts.push_back(verdict_on(sweep, method, cell));
   }
   return result;
+}
+
+bool may_double(const std::string& metric) {
+  if (metric == "over" || metric == "over_objects") return true;
+  const auto known = std::ranges::find(metrics(), metric, &Metric::name);
+  return known != metrics().end() && (known->unit == "us" || known->unit == "ms");
+}
+
+std::string missing_counter(const SweepResult& result) {
+  const bool all = std::ranges::none_of(
+      result.verdicts, [](const SweepVerdict& verdict) { return verdict.missing_counter.empty(); });
+  if (!all || result.verdicts.empty()) return "";
+  return "sweep " + result.sweep.name + ": " + result.verdicts.front().missing_counter;
 }
 
 std::string to_string(SweepVerdict::Agreement agreement) {

@@ -19,6 +19,7 @@ struct SweepPoint {
   State state = State::missing;
   std::string reason;   // of a failure
   double figure = 0.0;  // of the sweep's metric or counter; NaN if not measured
+  Guarantee guarantee = Guarantee::conservative;
   std::uint64_t false_px = 0, false_jittered = 0;
 };
 
@@ -27,10 +28,10 @@ struct SweepVerdict {
   /// `unknown`: so much of the sweep is missing that it cannot be told.
   enum class Agreement { nothing_expected, agrees, differs, unknown };
 
-  std::string culler;  // as SweepMethod::culler
-  Guarantee guarantee = Guarantee::conservative;
-  std::vector<SweepPoint> points;  // one for each value of the dial
-  double limit = 0.0;              // the highest figure that is not beyond it; NaN if unknown
+  std::string culler;                             // as SweepMethod::culler
+  Guarantee guarantee = Guarantee::conservative;  // the weakest of all values
+  std::vector<SweepPoint> points;                 // one for each value of the dial
+  double limit = 0.0;  // the highest figure that is not beyond it; NaN if unknown
   /// The first value of the dial whose figure is beyond the limit, or at which the method failed.
   std::optional<std::size_t> break_point;
   /// Every value up to the break point, or without one every value, was measured or failed.
@@ -38,7 +39,9 @@ struct SweepVerdict {
   std::optional<std::size_t> worst, least;  // values of the dial with the highest, lowest figure
   std::optional<SweepExpectation> expectation;
   Agreement agreement = Agreement::nothing_expected;
-  /// The first value of the dial at which a method that promises to be free of errors lost an
+  /// "METHOD has no counter 'x'; it has a, b", or empty.
+  std::string missing_counter;
+  /// The first value of the dial at which a method that promises to be free of errors there lost an
   /// undisputed pixel, or one that is conservative a jittered sample.
   std::optional<std::size_t> broken_promise;
 
@@ -58,6 +61,14 @@ struct SweepResult {
 using CellAtValue = std::function<const CellSummary*(std::size_t value, const std::string& chain)>;
 
 SweepResult find_break_points(const Sweep& sweep, const CellAtValue& cell);
+
+/// Where [limit] gives only a metric: may its figure be twice that at the first value? Else it may
+/// be no more than 0.
+bool may_double(const std::string& metric);
+
+/// What is wrong if all methods were measured and none has the counter that the sweep asks for;
+/// else empty.
+std::string missing_counter(const SweepResult& result);
 
 /// "agrees", "differs", "unknown", or "" where nothing is expected.
 std::string to_string(SweepVerdict::Agreement agreement);

@@ -11,6 +11,7 @@
 #include "experiments/matrix/resolution.h"
 #include "experiments/matrix/toml_keys.h"
 #include "experiments/results/files.h"
+#include "experiments/results/hash.h"
 
 namespace vislab {
 namespace {
@@ -20,6 +21,7 @@ using namespace toml_keys;
 
 constexpr std::size_t fewest_values = 8;
 constexpr std::string_view gap = "${dial}";
+constexpr const char* kept_folder = "sweep";  // in the sweep's folder: its text if not the lab's
 
 std::string replaced(std::string text, std::string_view with) {
   for (std::size_t at = 0; (at = text.find(gap, at)) != std::string::npos; at += with.size()) {
@@ -350,6 +352,21 @@ class SweepReader {
     for (std::size_t i = 0; i < chains.size(); ++i) {
       sweep_.blocks[i].cullers = with_anchors(chains[i], registry_);
     }
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      sweep_.conditions.push_back(conditions_of(scenes[i], paths[i]));
+    }
+  }
+
+  std::string conditions_of(const std::string& scene, const std::string& path) const {
+    std::ostringstream text;
+    for (const std::string& name : {scene, path}) {
+      const auto file = std::ranges::find(sweep_.files, fs::path(name), &SweepFile::file);
+      if (file != sweep_.files.end()) text << file->text;
+      text << '\n';
+    }
+    text << settings_.viewport.width << 'x' << settings_.viewport.height << ' ' << settings_.frames
+         << ' ' << settings_.seed << ' ' << settings_.device;
+    return hash_text(text.str());
   }
 
   fs::path path_;
@@ -387,7 +404,18 @@ Sweep load_sweep(const std::string& name_or_file, const fs::path& folder, const 
                  const Registry& registry) {
   const fs::path named = folder / (name_or_file + ".toml");
   if (fs::is_regular_file(named)) return SweepReader(named, results, registry).read();
-  if (fs::is_regular_file(name_or_file)) return SweepReader(name_or_file, results, registry).read();
+  if (const fs::path file = name_or_file; fs::is_regular_file(file)) {
+    Sweep sweep = SweepReader(file, results, registry).read();
+    const fs::path of_the_lab = folder / (sweep.name + ".toml");
+    if (fs::exists(of_the_lab) && fs::equivalent(file, of_the_lab)) return sweep;
+    if (fs::exists(of_the_lab)) {
+      throw InputError(file.string() + ": the lab has a sweep '" + sweep.name +
+                       "'; give the file another name");
+    }
+    sweep.files.push_back(
+        {results / "stress" / sweep.name / kept_folder / (sweep.name + ".toml"), read_file(file)});
+    return sweep;
+  }
   std::vector<std::string> known;
   for (const auto& [name, text] : list_sweeps(folder)) known.push_back(name);
   throw unknown_name("sweep (or file)", name_or_file, known);
@@ -400,6 +428,23 @@ std::vector<Sweep> load_sweeps(const fs::path& folder, const fs::path& results,
     sweeps.push_back(load_sweep(name, folder, results, registry));
   }
   std::ranges::stable_sort(sweeps, {}, failure_order);
+  return sweeps;
+}
+
+std::vector<Sweep> load_kept_sweeps(const fs::path& folder, const fs::path& results,
+                                    const Registry& registry) {
+  std::vector<fs::path> kept;
+  std::error_code none;  // no such folder: no sweep was run
+  for (const auto& entry : fs::directory_iterator(results / "stress", none)) {
+    const std::string name = entry.path().filename().string();
+    const fs::path file = entry.path() / kept_folder / (name + ".toml");
+    if (fs::exists(file) && !fs::exists(folder / (name + ".toml"))) kept.push_back(file);
+  }
+  std::ranges::sort(kept);
+  std::vector<Sweep> sweeps;
+  for (const fs::path& file : kept) {
+    sweeps.push_back(load_sweep(file.string(), folder, results, registry));
+  }
   return sweeps;
 }
 

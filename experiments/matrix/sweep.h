@@ -19,13 +19,12 @@
 //   at_most = 0.5                  or
 //   at_most_ratio = 2.0            times the figure at the dial's first value
 //   against = "frustum.flat"       an entry of `cullers`: figures are shares of its figure at the
-//   same
-//                                  value (1 = as much); needs at_most
+//                                  same value (1 = as much); needs at_most
 //   [[expect]]
 //   culler = "frustum.*"           pattern for entries of `cullers`, as they are written there
 //   breaks = "never"               or [4, 16]: the break point is one of the values in this range
-//   source = "…"                   who reports it
-//   because = "…"                  one sentence
+//   source = "…"                   who reports the failure; the range is this lab's prediction
+//   because = "…"                  what the range follows from, in one sentence
 //
 // In the scene, the path and the cullers "${dial}" stands for the dial's value: alone in its quotes
 // for the number, within a longer text for its digits.
@@ -89,8 +88,12 @@ struct Sweep {
   /// Values of the dial that leave scene and path alike share a block.
   std::vector<Block> blocks;
   std::vector<std::size_t> block_of_value;
-  /// The scenes and paths that the blocks name. Nothing is written until write_sweep_files().
+  /// The scenes and paths that the blocks name, and of a sweep that is not the lab's own its text.
+  /// Nothing is written until write_sweep_files().
   std::vector<SweepFile> files;
+  /// For each value what its answers depend on, but for the methods: hash of the texts of scene and
+  /// path, resolution, frames, seed, device.
+  std::vector<std::string> conditions;
 
   /// "false_px", "plane_tests a frame", "frame_ms ÷ that of frustum.flat"
   std::string figure_name() const;
@@ -98,13 +101,19 @@ struct Sweep {
 
 /// `name_or_file` is NAME of `folder`/NAME.toml, or a file. The blocks' scenes and paths are files
 /// below `results`/stress/NAME. Throws InputError that names file, line or key, and what would be
-/// right. Cullers are checked at every value of the dial; scenes are not loaded.
+/// right. Cullers are checked at every value of the dial; scenes are not loaded. A file elsewhere
+/// that is named like a sweep of `folder` is refused.
 Sweep load_sweep(const std::string& name_or_file, const std::filesystem::path& folder,
                  const std::filesystem::path& results, const Registry& registry);
 
 /// All sweeps of the folder, by failure and name.
 std::vector<Sweep> load_sweeps(const std::filesystem::path& folder,
                                const std::filesystem::path& results, const Registry& registry);
+
+/// The sweeps that are not in `folder` but were run into `results` from files elsewhere, as they
+/// were then, by name. Throws InputError like load_sweep().
+std::vector<Sweep> load_kept_sweeps(const std::filesystem::path& folder,
+                                    const std::filesystem::path& results, const Registry& registry);
 
 /// Names and descriptions of the sweeps in `folder`, sorted by name.
 std::vector<std::pair<std::string, std::string>> list_sweeps(const std::filesystem::path& folder);

@@ -24,6 +24,7 @@ std::string note_of(const SweepVerdict& verdict) {
     const SweepPoint& point = verdict.points[*verdict.break_point];
     if (point.state == SweepPoint::State::failed) return "failed: " + point.reason;
   }
+  if (!verdict.missing_counter.empty()) return verdict.missing_counter;
   if (verdict.is_complete) return "";
   return verdict.was_measured() ? "not all values were measured" : "not run";
 }

@@ -15,7 +15,7 @@ int report(const Lab& lab, const std::filesystem::path& results,
            const std::filesystem::path& output) {
   const std::vector<JudgedCell> cells = require_present_cells(results, lab.cullers);
   ReportInput input;
-  std::tie(input.blocks, input.sweep_blocks) = split_sweeps(summarise(cells), results);
+  std::tie(input.blocks, input.sweep_blocks) = split_sweeps(lab, summarise(cells), results);
   input.sweeps = sweep_results(lab, results, cells);
   input.published = load_published(lab.published, lab.cullers);
   input.cullers = &lab.cullers;

@@ -80,6 +80,31 @@ Work work_of(const Lab& lab, const RunCall& call) {
   return work;
 }
 
+/// The errors, each once: those of a sweep's scene or path, which may come at every value of its
+/// dial, as one that names the sweep.
+std::vector<std::string> told_once(const std::vector<std::string>& errors,
+                                   const std::vector<Sweep>& sweeps) {
+  std::vector<std::string> told;
+  std::set<std::string> told_sweeps;
+  for (const std::string& error : errors) {
+    std::string text = error;
+    std::string of_sweep;
+    for (const Sweep& sweep : sweeps) {
+      for (const SweepFile& file : sweep.files) {
+        const auto at = text.find(file.file.string());
+        if (at == std::string::npos) continue;
+        of_sweep = sweep.name;
+        text = "sweep " + sweep.name + ", " + text;
+        break;
+      }
+      if (!of_sweep.empty()) break;
+    }
+    if (!of_sweep.empty() && !told_sweeps.insert(of_sweep).second) continue;
+    if (std::ranges::find(told, text) == told.end()) told.push_back(text);
+  }
+  return told;
+}
+
 /// "2/4" as {2, 4}.
 std::pair<int, int> parse_shard(const std::string& text) {
   if (text.empty()) return {1, 1};
@@ -206,12 +231,14 @@ int run(const Lab& lab, const RunCall& call) {
   for (std::size_t i = 0; i < work.sweeps.size(); ++i) {
     note_sweep_cells(work.sweeps[i], outcome, work.first_block[i], call.results);
   }
+  if (outcome.errors.empty() || !outcome.cells.empty()) print_results(lab, call, outcome.cells);
   if (!outcome.errors.empty()) {
     std::string all;
-    for (const std::string& error : outcome.errors) all += (all.empty() ? "" : "\n") + error;
+    for (const std::string& error : told_once(outcome.errors, work.sweeps)) {
+      all += (all.empty() ? "" : "\n") + error;
+    }
     throw InputError(all);
   }
-  print_results(lab, call, outcome.cells);
   for (const std::string& failure : outcome.failures) std::cerr << "vislab: " << failure << '\n';
   if (outcome.stopped) {
     std::cerr << "stopped; the same call goes on from here\n";

@@ -1,5 +1,6 @@
 // Which stored cells belong to which stress sweep.
-//   RESULTS/stress/NAME/cells.json   ids of the cells at each value of the dial
+//   RESULTS/stress/NAME/cells.json   for each value of the dial: hash of what the sweep said of it,
+//                                    and the id of each method's cell; ids that were noted once
 #pragma once
 
 #include <filesystem>
@@ -13,18 +14,22 @@
 
 namespace vislab {
 
-/// Notes the cells of a run. `first_block` is where the sweep's blocks begin among those that were
-/// run. What was noted before is kept: a run may look at some of the cells only.
+/// Notes the cells of a run, each instead of the one that the same method had at that value.
+/// `first_block` is where the sweep's blocks begin among those that were run. What was noted of
+/// methods that this run did not look at is kept if the sweep still says the same of that value.
 void note_sweep_cells(const Sweep& sweep, const RunOutcome& outcome, std::size_t first_block,
                       const std::filesystem::path& results);
 
-/// Every sweep of the lab, measured or not, by failure, and what is stored of it. `cells` are those
-/// that count. Throws InputError for sweeps and notes that are wrong.
+/// Every sweep of the lab, measured or not, by failure, then those that were run from other files,
+/// and what is stored of each as it is described now. `cells` are those that count. Throws
+/// InputError for sweeps and notes that are wrong, and where no method has the counter that a sweep
+/// asks for.
 std::vector<SweepResult> sweep_results(const Lab& lab, const std::filesystem::path& results,
                                        const std::vector<JudgedCell>& cells);
 
-/// The blocks that hold anything else than cells of sweeps, and the others.
+/// The blocks that hold anything else than cells of sweeps, and those of the sweeps as they are
+/// described now. Cells of sweeps that have changed or are gone are in neither.
 std::pair<std::vector<BlockSummary>, std::vector<BlockSummary>> split_sweeps(
-    std::vector<BlockSummary> blocks, const std::filesystem::path& results);
+    const Lab& lab, std::vector<BlockSummary> blocks, const std::filesystem::path& results);
 
 }  // namespace vislab

@@ -182,6 +182,31 @@ TEST(BreakPoint, APromiseIsBrokenByALostRayToo) {
   EXPECT_FALSE(verdict_of(one_method(), exact).broken_promise) << "it promises only the pixels";
 }
 
+TEST(BreakPoint, APromiseIsHeldToWhatTheMethodDeclaresAtThatValue) {
+  // A parameter that the dial turns makes the method erroneous from the fifth value on.
+  const auto cells = cells_with(Guarantee::conservative, [](std::size_t i, CellSummary& cell) {
+    if (i >= 4) cell.guarantee = Guarantee::erroneous;
+    cell.false_px = i == 3 || i == 6 ? 1 : 0;
+  });
+  const SweepVerdict verdict = verdict_of(one_method(), cells);
+  EXPECT_EQ(verdict.guarantee, Guarantee::erroneous);
+  EXPECT_EQ(verdict.broken_promise, 3U);
+}
+
+TEST(BreakPoint, ACounterThatAMethodDoesNotHaveIsNamedBesideThoseThatItHas) {
+  const auto cells = cells_with(Guarantee::conservative, [](std::size_t, CellSummary& cell) {
+    cell.culler = "m";
+    cell.counters = {{"nodes", 1.0}, {"plane_tests", 2.0}};
+  });
+  const Sweep sweep = one_method({"plane_test", true, 45.0, {}, {}});
+  const SweepVerdict verdict = verdict_of(sweep, cells);
+  EXPECT_EQ(verdict.missing_counter, "m has no counter 'plane_test'; it has nodes, plane_tests");
+  EXPECT_FALSE(verdict.is_complete);
+  EXPECT_EQ(missing_counter({sweep, {verdict}}), "sweep made_up: " + verdict.missing_counter);
+  EXPECT_EQ(missing_counter({sweep, {verdict, SweepVerdict()}}), "") << "another may have it";
+  EXPECT_EQ(missing_counter({sweep, {}}), "");
+}
+
 TEST(BreakPoint, AFigureThatDoesNotApplyLeavesTheSweepOpen) {
   const auto cells = cells_with(Guarantee::conservative, [](std::size_t i, CellSummary& cell) {
     if (i == 2) cell.over = std::numeric_limits<double>::quiet_NaN();

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -50,12 +51,13 @@ TEST(Stress, ASweepFileRunsOnceAndItsPlanIsDone) {
   }
 }
 
-TEST(Stress, TheLabsOwnSweepAgreesWithWhatItExpects) {
+TEST(Stress, TheAtlasTellsWhereMethodsBreakAndWhetherThatWasExpected) {
   const TemporaryFolder folder;
   const std::string results = folder.path() / "results";
   ASSERT_EQ(run_vislab({"run", "box_in_frustum", "--results", results, "--quiet"}).exit_code, 0);
   const ProgramResult atlas = run_vislab({"atlas", "--results", results, "--json"});
-  EXPECT_EQ(atlas.exit_code, 0) << atlas.out;
+  const bool differs = atlas.out.find("\"differs\"") != std::string::npos;
+  EXPECT_EQ(atlas.exit_code, differs ? 1 : 0) << atlas.out;
   EXPECT_NE(atlas.err.find("not run: "), std::string::npos);
   std::map<std::string, nlohmann::json> rows;
   for (const auto& row : objects(atlas.out)) rows[row.at("culler")] = row;
@@ -65,6 +67,81 @@ TEST(Stress, TheLabsOwnSweepAgreesWithWhatItExpects) {
   EXPECT_GT(wrong.at("breaks_at"), 0.5);
   EXPECT_GT(wrong.at("worst"), 0.0);
   EXPECT_EQ(wrong.at("guarantee"), "erroneous");
+}
+
+TEST(Stress, TheAtlasKnowsSweepsOfOnesOwnAndOnlyAsTheyAreNow) {
+  const TemporaryFolder folder;
+  const std::string results = folder.path() / "results";
+  const auto run = [&](const std::string& text) {
+    return run_vislab({"run", folder.write("growing.toml", text), "--results", results, "--quiet"});
+  };
+  const auto rows = [&] {
+    std::map<std::string, nlohmann::json> found;
+    for (const auto& row : objects(run_vislab({"atlas", "--results", results, "--json"}).out)) {
+      if (row.at("sweep") == "growing") found[row.at("culler")] = row;
+    }
+    return found;
+  };
+  const std::string wrong = "frustum.wrong[error=all_corners_inside]";
+  std::string text = growing_boxes("[1, 64]");
+  text.replace(text.find("any_corner_inside"), 17, "all_corners_inside");
+  ASSERT_EQ(run(text).exit_code, 0);
+  const double first = rows().at(wrong).at("worst");
+  EXPECT_GT(first, 0.0);
+  // Fewer boxes, same dial and chains: the figures must be those of the new boxes.
+  text.replace(text.find("count = 60"), 10, "count = 20");
+  ASSERT_EQ(run(text).exit_code, 0);
+  const double second = rows().at(wrong).at("worst");
+  EXPECT_NE(second, first);
+  EXPECT_EQ(rows().at(wrong).at("note"), "");
+  // Only some of the cells: the others' notes stay.
+  ASSERT_EQ(run_vislab({"run", folder.path() / "growing.toml", "--results", results, "--quiet",
+                        "--filter", "flat"})
+                .exit_code,
+            0);
+  EXPECT_EQ(rows().at(wrong).at("worst"), second);
+  // Described anew, not run again: nothing that was measured counts.
+  text.replace(text.find("count = 20"), 10, "count = 30");
+  const std::string kept = folder.path() / "results/stress/growing/sweep/growing.toml";
+  std::ofstream(kept) << text;
+  const ProgramResult stale = run_vislab({"atlas", "--results", results});
+  EXPECT_EQ(stale.exit_code, 2);
+  EXPECT_NE(stale.err.find("no stress sweep was run"), std::string::npos) << stale.err;
+}
+
+TEST(Stress, AFileNamedLikeASweepOfTheLabIsRefused) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run_vislab({"run", folder.write("box_edge.toml", growing_boxes("[1, 64]")), "--results",
+                  folder.path() / "results"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("another name"), std::string::npos) << result.err;
+}
+
+TEST(Stress, ACounterThatNoMethodHasIsRefusedByTheAtlas) {
+  const TemporaryFolder folder;
+  const std::string results = folder.path() / "results";
+  const std::string text =
+      growing_boxes("[1, 64]") + "[limit]\ncounter = \"plane_test\"\nat_most = 1\n";
+  const ProgramResult run =
+      run_vislab({"run", folder.write("growing.toml", text), "--results", results, "--quiet"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const ProgramResult atlas = run_vislab({"atlas", "--results", results});
+  EXPECT_EQ(atlas.exit_code, 2);
+  EXPECT_NE(atlas.err.find("has no counter 'plane_test'"), std::string::npos) << atlas.err;
+  EXPECT_NE(atlas.err.find("plane_tests"), std::string::npos) << "the right ones are named";
+}
+
+TEST(Stress, ASceneThatIsWrongAtEveryValueIsToldOnce) {
+  const TemporaryFolder folder;
+  std::string text = growing_boxes("[1, 64]");
+  text.replace(text.find("count = 60"), 10, "count = -1");
+  const ProgramResult result = run_vislab({"run", folder.write("growing.toml", text), "--results",
+                                           folder.path() / "results", "--quiet"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
+  EXPECT_NE(result.err.find("sweep growing"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("count"), std::string::npos) << result.err;
 }
 
 TEST(Stress, SweepsAreListedDescribedAndRefusedLikeMatrices) {
