@@ -6,7 +6,10 @@
 #include <array>
 #include <cmath>
 #include <iostream>
+#include <limits>
+#include <memory>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,8 +35,10 @@ constexpr int camera_count = 160;  // the cullers take ten times as long
 constexpr int camera_count = 4'100;
 #endif
 constexpr int boxes_per_camera = 250;
-/// Most variants are given each so manieth world only, and in these the camera moves too.
-constexpr int part = 12;
+/// Where the camera is moved to boxes of its world, to touch them as nearly as double allows.
+constexpr std::uint64_t touches_per_camera = 5;
+/// Most variants are given each so manieth world only, and in these the camera turns too.
+constexpr int part = 20;
 
 /// What a variant's volumes are made of.
 enum class Volumes { boxes, meshes };
@@ -141,6 +146,20 @@ Camera turned(Random& random, Camera camera) {
   return camera;
 }
 
+/// Moves the mesh so that it touches a plane from outside as nearly as double allows.
+void touch_a_plane(Random& random, const Camera& camera, const Mesh& mesh,
+                   glm::dmat4x3& transform) {
+  const Frustum frustum = frustum_of(camera);
+  const Plane& plane =
+      frustum.planes[random.below(static_cast<std::uint64_t>(frustum.plane_count))];
+  double farthest = -std::numeric_limits<double>::infinity();
+  for (const glm::vec3& position : mesh.positions) {
+    farthest = std::max(farthest, plane.signed_distance(transform * glm::dvec4(position, 1.0)));
+  }
+  const double nudge = random.uniform(-1.0, 1.0) * 0x1p-52 * glm::length(transform[3]);
+  transform[3] -= plane.normal * (farthest + nudge);
+}
+
 /// What the exact judge says of the objects before one camera; asked only once of each.
 class Verdicts {
  public:
@@ -174,6 +193,13 @@ class Verdicts {
   std::span<const Aabb> boxes_;
   std::span<const Object> placed_;
   std::vector<Verdict> verdicts_;
+};
+
+/// A camera that touches an object.
+struct Touch {
+  ObjectId object = 0;
+  Camera camera;
+  std::unique_ptr<Verdicts> verdicts;
 };
 
 class CullerExactness : public testing::Test {
@@ -210,10 +236,10 @@ class CullerExactness : public testing::Test {
   }
 
   void judge_objects(const Variant& variant, ICuller& culler, const Scene& scene,
-                     const Frame& frame, const Changes& changes, Verdicts& verdicts,
-                     Counts& counts) {
+                     const Frame& frame, const Changes& changes, std::span<const ObjectId> judged,
+                     Verdicts& verdicts, Counts& counts) {
     const std::vector<bool>& keeps = kept(culler, scene, frame, changes);
-    for (ObjectId object = 0; object < scene.object_count(); ++object) {
+    for (const ObjectId object : judged) {
       ++counts.offered;
       if (keeps[scene.first_triangle(object)]) continue;
       ++counts.left_out;
@@ -247,14 +273,19 @@ TEST_F(CullerExactness, ConservativeCullersLeaveOutOnlyBoxesThatAreOutsideInExac
     const Scene scene = scene_of(random, camera, boxes);
     const SceneState state(scene);
     all.transforms.assign(state.view().transforms.begin(), state.view().transforms.end());
-    const bool moves = i % part == 0;
+    const bool turns = i % part == 0;
     const Camera by_turning = turned(random, camera);
-    const Camera by_touching = touching_camera(random, camera, boxes[random.below(boxes.size())]);
 
     Verdicts as_built(camera, state.view().bounds, scene.objects);
     Verdicts as_moved(camera, boxes, {});
     Verdicts after_turn(by_turning, boxes, {});
-    Verdicts after_touch(by_touching, boxes, {});
+    std::vector<Touch> touches;
+    for (std::uint64_t t = 0; t < touches_per_camera; ++t) {
+      const auto object = static_cast<ObjectId>(random.below(boxes.size()));
+      const Camera from = touching_camera(random, camera, boxes[object]);
+      touches.push_back(
+          {object, from, std::make_unique<Verdicts>(from, boxes, std::span<const Object>())});
+    }
     // Of the boxes, structures know those of the placed cubes first, then those that are not.
     ObjectsView handed_in = state.view();
     handed_in.bounds = boxes;
@@ -263,17 +294,22 @@ TEST_F(CullerExactness, ConservativeCullersLeaveOutOnlyBoxesThatAreOutsideInExac
       if (i % variant.every != 0) continue;
       const auto culler = built(variant, scene);
       const auto judge = [&](std::uint64_t frame, const Camera& from, const ObjectsView& objects,
-                             const Changes& changes, Verdicts& verdicts) {
+                             const Changes& changes, std::span<const ObjectId> judged,
+                             Verdicts& verdicts) {
         judge_objects(variant, *culler, scene, {frame, from, {64, 64}, objects, 0.0}, changes,
-                      verdicts, counts[v]);
+                      judged, verdicts, counts[v]);
       };
-      judge(0, camera, state.view(), {}, as_built);
+      judge(0, camera, state.view(), {}, all.moved, as_built);
       if (variant.volumes == Volumes::meshes) continue;
-      judge(1, camera, handed_in, all, as_moved);
-      if (!moves) continue;
-      judge(2, by_turning, handed_in, {}, after_turn);
-      judge(3, camera, handed_in, {}, as_moved);
-      judge(4, by_touching, handed_in, {}, after_touch);
+      judge(1, camera, handed_in, all, all.moved, as_moved);
+      if (turns) {
+        judge(2, by_turning, handed_in, {}, all.moved, after_turn);
+        judge(3, camera, handed_in, {}, all.moved, as_moved);
+      }
+      for (std::uint64_t t = 0; t < touches.size(); ++t) {
+        Touch& touch = touches[t];
+        judge(4 + t, touch.camera, handed_in, {}, std::span(&touch.object, 1), *touch.verdicts);
+      }
     }
   }
   std::cout << camera_count << " cameras, " << boxes_per_camera << " boxes before each\n";
@@ -316,6 +352,7 @@ TEST_F(CullerExactness, ConservativeCullersLeaveOutOnlyTrianglesThatAreOutsideIn
         const auto first = static_cast<std::uint32_t>(mesh.positions.size()) - 3;
         mesh.triangles.emplace_back(first, first + 1, first + 2);
       }
+      if (mesh.triangles.size() == 1) touch_a_plane(random, camera, mesh, transform);
       scene.meshes.push_back(std::move(mesh));
       scene.objects.push_back({m, transform, none_id});
     }
