@@ -5,10 +5,9 @@
 // Source: Golub and Van Loan, Matrix Computations, 8.5.
 #include "common/geometry/symmetric_eigen.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 namespace vislab {
 namespace {
@@ -49,8 +48,12 @@ SymmetricEigen symmetric_eigen(const glm::dmat3& matrix) {
     rotate(rest, vectors, 1, 2);
   }
   std::array<int, 3> order{0, 1, 2};
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return rest[a][a] > rest[b][b]; });
+  // Equal values keep their order. By hand: std::stable_sort takes memory.
+  for (const std::size_t first : {0U, 1U, 0U}) {
+    const int a = order[first];
+    const int b = order[first + 1];
+    if (rest[b][b] > rest[a][a]) std::swap(order[first], order[first + 1]);
+  }
   SymmetricEigen result;
   for (int i = 0; i < 3; ++i) {
     const int from = order[static_cast<std::size_t>(i)];
