@@ -18,6 +18,7 @@
 #include "common/spatial/bvh.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "algorithms/frustum/structure_culler.h"
 #include "common/culler/registry.h"
@@ -92,8 +93,8 @@ Bvh::Limits read_limits(const ParameterValues& values) {
   return limits;
 }
 
-/// When a hierarchy has become so loose that a rebuild pays: when queries have lost as much as it
-/// costs. That is never more than twice what the best choice in hindsight would have cost.
+/// When a hierarchy has become so loose that a rebuild pays: when queries have lost about as much
+/// as it costs.
 class Looseness {
  public:
   void forget() { lost_ = 0.0; }
@@ -172,7 +173,8 @@ class WideCuller : public ICuller {
   }
 
   std::size_t bytes() const override {
-    return bvh_.bytes() + selection_.bytes() + listed_.capacity() * sizeof(ObjectId);
+    return bvh_.bytes() + selection_.bytes() + listed_.capacity() * sizeof(ObjectId) +
+           (tree_ ? tree_->bytes() : 0);
   }
 
   Counters counters() const override {
@@ -204,9 +206,9 @@ class WideCuller : public ICuller {
     if (limits_.build == Bvh::Build::packed) {
       bvh_.build(boxes, WideBvh::Order::median);
     } else {
-      Bvh tree(limits_);
-      tree.build(boxes);
-      bvh_.build(boxes, tree);
+      bvh_.build(boxes, tree_over(boxes));
+      // Who rebuilds finds its memory again.
+      if (limits_.motion != Bvh::Motion::rebuild) tree_.reset();
     }
     looseness_.forget();
     changed_ = false;
@@ -216,16 +218,21 @@ class WideCuller : public ICuller {
     if (limits_.build == Bvh::Build::packed) {
       bvh_.rebuild(boxes, WideBvh::Order::morton);
     } else {
-      Bvh tree(limits_);
-      tree.build(boxes);
-      bvh_.rebuild(boxes, tree);
+      bvh_.rebuild(boxes, tree_over(boxes));
     }
+  }
+
+  const Bvh& tree_over(std::span<const Aabb> boxes) {
+    if (!tree_) tree_.emplace(limits_);
+    tree_->build(boxes);
+    return *tree_;
   }
 
   CullerInfo info_;
   Bvh::Limits limits_;
   WideBvh::QueryOptions query_;
   const Scene* scene_ = nullptr;
+  std::optional<Bvh> tree_;  // that bvh_ is made of, unless it is packed
   WideBvh bvh_;
   WideSelection selection_;
   Looseness looseness_;

@@ -31,11 +31,6 @@ bool holds(const Aabb& outer, const Aabb& inner) {
 
 }  // namespace
 
-Bvh::Bvh(const Limits& limits) : limits_(limits) {
-  limits_.leaf_objects = std::max(limits_.leaf_objects, 1U);
-  clear_tree();
-}
-
 void Bvh::clear_tree() {
   nodes_.assign(1, {});
   links_.assign(1, {});
@@ -342,13 +337,6 @@ double Bvh::surface_area() const {
     for (std::uint32_t i = 0; i < node.child_count; ++i) open.push_back(node.first_child + i);
   }
   return 2.0 * half;
-}
-
-std::size_t Bvh::bytes() const {
-  const auto size = [](const auto& values) { return values.capacity() * sizeof(values[0]); };
-  return size(nodes_) + size(links_) + size(leaves_) + size(objects_) + size(places_) +
-         size(unplaced_) + size(free_pairs_) + size(free_capacities_) + size(moved_) +
-         size(queue_) + size(stack_) + size(shared_);
 }
 
 }  // namespace vislab

@@ -11,17 +11,21 @@
 //   never smaller (enlarge), the object is removed and inserted from the root (reinsert), or the
 //   tree is built anew (rebuild). Enlarging and reinserting are Kowalka 2016, 2.5.2.
 // Cost: top-down O(n log n), bottom-up about O(n), packed O(n), insertion usually O(log n), removal
-//   O(depth), refit O(moved leaves and their ancestors).
+//   O(depth), refit O(moved leaves and their ancestors). With motion by rebuilding, builders keep
+//   their memory: to build the same again allocates nothing.
 // Limits: refitted and enlarged trees get worse as objects mix. Memory grows with the largest id.
 // Objects whose box is not valid are unplaced; all others have a node, wherever they are.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "common/spatial/spatial_structure.h"
 
 namespace vislab {
+
+struct BvhBuildMemory;
 
 class Bvh : public SpatialStructure {
  public:
@@ -34,6 +38,7 @@ class Bvh : public SpatialStructure {
   };
 
   explicit Bvh(const Limits& limits);
+  ~Bvh() override;
 
   void build(std::span<const Aabb> boxes) override;
   void insert(ObjectId object, const Aabb& box) override;
@@ -113,6 +118,7 @@ class Bvh : public SpatialStructure {
   std::vector<Candidate> queue_;
   std::vector<NodeIndex> stack_;
   std::vector<ObjectId> shared_;
+  std::unique_ptr<BvhBuildMemory> build_memory_;
 };
 
 }  // namespace vislab

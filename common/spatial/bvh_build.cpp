@@ -118,23 +118,6 @@ std::size_t split_by_areas(std::span<Item> items, std::size_t leaf_objects) {
   return static_cast<std::size_t>(second - items.begin());
 }
 
-/// Puts the items in the order of the Z curve.
-void sort_along_curve(std::vector<Item>& items) {
-  Aabb domain;
-  for (const Item& item : items) domain.extend(glm::vec3(item.center));
-  const MortonGrid grid(domain);
-  std::vector<MortonKey> keys;
-  for (std::uint32_t i = 0; i < items.size(); ++i) {
-    keys.push_back({grid.code(glm::vec3(items[i].center)), i});
-  }
-  std::vector<MortonKey> scratch;
-  sort_by_code(keys, scratch);
-  std::vector<Item> sorted;
-  sorted.reserve(items.size());
-  for (const MortonKey& key : keys) sorted.push_back(items[key.index]);
-  items.swap(sorted);
-}
-
 /// A part of the tree that the bottom-up builder has made.
 struct Cluster {
   Aabb box;
@@ -142,15 +125,51 @@ struct Cluster {
   std::uint32_t left = 0, right = 0;  // clusters; of a single object: its item, twice
 };
 
+/// A node that is still to be divided among its items.
+struct Range {
+  Bvh::NodeIndex node;
+  std::size_t begin, end;
+};
+
+/// A node and the cluster that it is made of, whose items begin there.
+struct Part {
+  Bvh::NodeIndex node;
+  std::uint32_t cluster;
+  std::size_t begin;
+};
+
 }  // namespace
 
-/// Fills the nodes of one tree. Friend of Bvh.
+/// What builders work in, from one build to the next.
+struct BvhBuildMemory {
+  std::vector<Item> items, ordered;
+  std::vector<Range> ranges;  // in the order in which they are divided
+  std::vector<MortonKey> keys, key_scratch;
+  std::vector<Cluster> clusters;
+  std::vector<std::uint32_t> active;  // clusters that have no parent yet
+  std::vector<std::size_t> partners;  // by active cluster
+  std::vector<Part> parts, leaves;
+  std::vector<ObjectId> objects;
+  std::vector<Bvh::NodeIndex> nodes;
+
+  std::size_t bytes() const {
+    const auto size = [](const auto& values) { return values.capacity() * sizeof(values[0]); };
+    return sizeof(BvhBuildMemory) + size(items) + size(ordered) + size(ranges) + size(keys) +
+           size(key_scratch) + size(clusters) + size(active) + size(partners) + size(parts) +
+           size(leaves) + size(objects) + size(nodes);
+  }
+};
+
+/// Fills the nodes of one tree with the items in the memory. Friend of Bvh.
 class BvhBuilder {
  public:
-  BvhBuilder(Bvh& bvh, std::vector<Item> items) : bvh_(bvh), items_(std::move(items)) {}
+  BvhBuilder(Bvh& bvh, BvhBuildMemory& memory)
+      : bvh_(bvh), memory_(memory), items_(memory.items), open_(memory.ranges) {
+    open_.clear();
+  }
 
   void from_ranges(bool along_curve) {
-    if (along_curve) sort_along_curve(items_);
+    if (along_curve) sort_along_curve();
     const std::size_t leaf_objects = bvh_.limits_.leaf_objects;
     split_range(Bvh::root, 0, items_.size());
     for (std::size_t i = 0; i < open_.size(); ++i) {
@@ -166,16 +185,18 @@ class BvhBuilder {
   }
 
   void bottom_up() {
-    sort_along_curve(items_);
-    std::vector<Cluster> clusters;
+    sort_along_curve();
+    std::vector<Cluster>& clusters = memory_.clusters;
+    std::vector<std::uint32_t>& active = memory_.active;
+    clusters.clear();
     clusters.reserve(items_.size() * 2);
-    std::vector<std::uint32_t> active;
+    active.clear();
     for (std::uint32_t i = 0; i < items_.size(); ++i) {
       active.push_back(i);
       clusters.push_back({items_[i].box, 1, i, i});
     }
-    while (active.size() > 1) merge_partners(clusters, active);
-    if (!clusters.empty()) from_clusters(clusters);
+    while (active.size() > 1) merge_partners();
+    if (!clusters.empty()) from_clusters();
     set_boxes();
   }
 
@@ -189,10 +210,26 @@ class BvhBuilder {
   }
 
  private:
-  struct Range {
-    Bvh::NodeIndex node;
-    std::size_t begin, end;
-  };
+  /// Puts the items in the order of the Z curve.
+  void sort_along_curve() {
+    Aabb domain;
+    for (const Item& item : items_) domain.extend(glm::vec3(item.center));
+    const MortonGrid grid(domain);
+    std::vector<MortonKey>& keys = memory_.keys;
+    keys.clear();
+    // Arrays that are swapped have room for the same number: then it does not matter which is
+    // which.
+    keys.reserve(items_.capacity());
+    memory_.key_scratch.reserve(items_.capacity());
+    memory_.ordered.reserve(items_.capacity());
+    for (std::uint32_t i = 0; i < items_.size(); ++i) {
+      keys.push_back({grid.code(glm::vec3(items_[i].center)), i});
+    }
+    sort_by_code(keys, memory_.key_scratch);
+    memory_.ordered.clear();
+    for (const MortonKey& key : keys) memory_.ordered.push_back(items_[key.index]);
+    items_.swap(memory_.ordered);
+  }
 
   Bvh::NodeIndex divide(Bvh::NodeIndex node) {
     const Bvh::NodeIndex pair = bvh_.add_pair(node);
@@ -227,9 +264,12 @@ class BvhBuilder {
   }
 
   /// One round: those that are each other's best partner become one.
-  static void merge_partners(std::vector<Cluster>& clusters, std::vector<std::uint32_t>& active) {
+  void merge_partners() {
+    std::vector<Cluster>& clusters = memory_.clusters;
+    std::vector<std::uint32_t>& active = memory_.active;
+    std::vector<std::size_t>& partner = memory_.partners;
     const std::size_t count = active.size();
-    std::vector<std::size_t> partner(count);
+    partner.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
       double best = std::numeric_limits<double>::infinity();
       std::size_t chosen = i == 0 ? 1 : i - 1;
@@ -266,16 +306,15 @@ class BvhBuilder {
     active.resize(kept);
   }
 
-  void from_clusters(const std::vector<Cluster>& clusters) {
-    struct Part {
-      Bvh::NodeIndex node;
-      std::uint32_t cluster;
-      std::size_t begin;
-    };
-    std::vector<Item> ordered(items_.size());
+  void from_clusters() {
+    const std::vector<Cluster>& clusters = memory_.clusters;
+    std::vector<Item>& ordered = memory_.ordered;
+    std::vector<Part>& open = memory_.parts;
+    std::vector<Part>& leaves = memory_.leaves;
+    ordered.resize(items_.size());
     bvh_.objects_.resize(items_.size());
-    std::vector<Part> open{{Bvh::root, static_cast<std::uint32_t>(clusters.size()) - 1, 0}};
-    std::vector<Part> leaves;
+    open.assign(1, {Bvh::root, static_cast<std::uint32_t>(clusters.size()) - 1, 0});
+    leaves.clear();
     for (std::size_t i = 0; i < open.size(); ++i) {
       const auto [node, index, begin] = open[i];
       const Cluster& cluster = clusters[index];
@@ -307,8 +346,10 @@ class BvhBuilder {
 
   /// Brings the objects of a tree that was made by insertion into the order of its leaves.
   void lay_out() {
-    std::vector<ObjectId> ordered(items_.size());
-    std::vector<Bvh::NodeIndex> open{Bvh::root};
+    std::vector<ObjectId>& ordered = memory_.objects;
+    std::vector<Bvh::NodeIndex>& open = memory_.nodes;
+    ordered.resize(items_.size());
+    open.assign(1, Bvh::root);
     for (std::size_t i = 0; i < open.size(); ++i) {
       const Bvh::NodeIndex node = open[i];
       const std::uint32_t begin = bvh_.links_[node].first_below;
@@ -325,7 +366,8 @@ class BvhBuilder {
       open.push_back(at.first_child);
       open.push_back(at.first_child + 1);
     }
-    bvh_.objects_.swap(ordered);
+    // Not swapped: insertion, which spreads objects wider, finds its memory again.
+    bvh_.objects_.assign(ordered.begin(), ordered.end());
     bvh_.free_capacities_.clear();
   }
 
@@ -337,9 +379,18 @@ class BvhBuilder {
   }
 
   Bvh& bvh_;
-  std::vector<Item> items_;
-  std::vector<Range> open_;  // nodes that were to be divided, in the order in which they are
+  BvhBuildMemory& memory_;
+  std::vector<Item>& items_;
+  std::vector<Range>& open_;
 };
+
+Bvh::Bvh(const Limits& limits)
+    : limits_(limits), build_memory_(std::make_unique<BvhBuildMemory>()) {
+  limits_.leaf_objects = std::max(limits_.leaf_objects, 1U);
+  clear_tree();
+}
+
+Bvh::~Bvh() = default;
 
 void Bvh::build(std::span<const Aabb> boxes) {
   places_.assign(boxes.size(), {});
@@ -361,13 +412,14 @@ void Bvh::build(std::span<const Aabb> boxes) {
 
 void Bvh::build_tree() {
   clear_tree();
-  std::vector<Item> items;
+  std::vector<Item>& items = build_memory_->items;
+  items.clear();
   items.reserve(places_.size());
   for (ObjectId object = 0; object < places_.size(); ++object) {
     const Place& place = places_[object];
     if (place.node < in_unplaced) items.push_back({place.box, place.box.center(), object});
   }
-  BvhBuilder builder(*this, std::move(items));
+  BvhBuilder builder(*this, *build_memory_);
   switch (limits_.build) {
     case Build::top_down:
       builder.from_ranges(false);
@@ -383,6 +435,14 @@ void Bvh::build_tree() {
       break;
   }
   runs_intact_ = true;
+  if (limits_.motion != Motion::rebuild) *build_memory_ = {};
+}
+
+std::size_t Bvh::bytes() const {
+  const auto size = [](const auto& values) { return values.capacity() * sizeof(values[0]); };
+  return size(nodes_) + size(links_) + size(leaves_) + size(objects_) + size(places_) +
+         size(unplaced_) + size(free_pairs_) + size(free_capacities_) + size(moved_) +
+         size(queue_) + size(stack_) + size(shared_) + build_memory_->bytes();
 }
 
 }  // namespace vislab

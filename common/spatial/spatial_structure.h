@@ -1,5 +1,6 @@
 // The one interface of all spatial structures over the objects' boxes: bounding-volume hierarchies,
-// octrees, binary space partitions.
+// octrees, binary space partitions. WideBvh is none of them: it is a layout for queries, which is
+// made of any structure that repeats no objects by WideBvh::build(boxes, tree).
 #pragma once
 
 #include <cstdint>
@@ -40,8 +41,8 @@ class SpatialStructure {
   /// objects again.
   virtual void finish_changes() = 0;
 
-  /// All nodes; nodes()[root] is the root, and what is not reachable from it means nothing. There is
-  /// always a root.
+  /// All nodes; nodes()[root] is the root, and what is not reachable from it means nothing. There
+  /// is always a root.
   virtual std::span<const SpatialNode> nodes() const = 0;
   /// The objects at the node itself. In every node of an octree for moving objects, in the leaves
   /// of the others.

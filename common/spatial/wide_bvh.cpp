@@ -259,7 +259,8 @@ std::size_t WideBvh::bytes() const {
   const auto size = [](const auto& values) { return values.capacity() * sizeof(values[0]); };
   return size(nodes_) + size(leaves_) + size(objects_) + size(first_place_) + size(node_parent_) +
          size(leaf_parent_) + size(slot_) + size(state_) + size(absent_bits_) + size(apart_) +
-         size(dirty_leaves_) + size(dirty_nodes_) + size(items_) + size(keys_) + size(key_scratch_);
+         size(dirty_leaves_) + size(dirty_nodes_) + size(items_) + size(keys_) +
+         size(key_scratch_) + size(tree_counts_) + size(tree_order_) + size(sources_);
 }
 
 void WideBvh::audit(std::span<const Aabb> boxes) const {

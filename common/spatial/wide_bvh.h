@@ -1,5 +1,7 @@
 // A bounding-volume hierarchy in the layout for fast frustum queries: eight children a node, whose
-// boxes are tested at once.
+// boxes are tested at once. It is no SpatialStructure, but a layout for queries that build(boxes,
+// tree) makes of one: its blocks of boxes relative to an origin are not nodes that others could
+// walk.
 //
 // Idea: the boxes of a node's children, and of a leaf's objects, are arrays of eight minima and
 //   maxima an axis. Objects are kept in the order of the leaves, so that whatever lies below a node
@@ -111,8 +113,8 @@ class WideBvh {
   /// After changes and before the next query: all nodes hold their objects again.
   void refit();
 
-  /// Sum of the surface areas of all nodes, as a multiple of what it was when built; 1 if there is
-  /// nothing.
+  /// Sum of the surface areas of all nodes, as a multiple of what it was when built, with all
+  /// objects present; less than 1 while many are absent, and 1 if there is nothing.
   double decay() const;
   /// Objects that are kept apart: each query tests them one by one.
   std::size_t apart_count() const { return apart_.size(); }
@@ -175,6 +177,14 @@ class WideBvh {
   };
   std::vector<Item> items_;  // memory of builds
   std::vector<MortonKey> keys_, key_scratch_;
+  struct Source {
+    std::uint32_t node;
+    std::uint32_t tree_node;
+    std::uint32_t first_place;
+  };
+  std::vector<std::uint32_t> tree_counts_;  // memory of builds from a tree: objects by its node
+  std::vector<std::uint32_t> tree_order_;
+  std::vector<Source> sources_;  // nodes still to be filled, and the tree's nodes they are made of
 };
 
 }  // namespace vislab

@@ -71,7 +71,8 @@ float reach_of(std::span<const Aabb> boxes, const glm::vec3& origin) {
 /// Builds the nodes of one hierarchy. Friend of WideBvh.
 class WideBvhBuilder {
  public:
-  explicit WideBvhBuilder(WideBvh& bvh) : bvh_(bvh) {}
+  explicit WideBvhBuilder(WideBvh& bvh)
+      : bvh_(bvh), object_counts_(bvh.tree_counts_), open_(bvh.sources_) {}
 
   /// Objects lie in items_ (median) or already in objects_ (Z curve), as leaves of eight.
   void packed(bool medians) {
@@ -91,7 +92,7 @@ class WideBvhBuilder {
     bvh_.objects_.resize(object_counts_[SpatialStructure::root]);
     bvh_.nodes_.emplace_back();
     bvh_.node_parent_.push_back(0);
-    open_.push_back({0, SpatialStructure::root, 0});
+    open_.assign(1, {0, SpatialStructure::root, 0});
     while (!open_.empty()) {
       const Source next = open_.back();
       open_.pop_back();
@@ -100,12 +101,7 @@ class WideBvhBuilder {
   }
 
  private:
-  /// A node that is still to be filled, and the node of the tree that it is made of.
-  struct Source {
-    std::uint32_t node;
-    std::uint32_t tree_node;
-    std::uint32_t first_place;
-  };
+  using Source = WideBvh::Source;
 
   /// Adds the children of `node`: `inner` nodes, then `leaves` leaves.
   void add_children(std::uint32_t node, std::uint32_t inner, std::uint32_t leaves) {
@@ -169,7 +165,8 @@ class WideBvhBuilder {
   /// Objects at and below each node of the tree. Trees can be deep: no recursion.
   void count_objects() {
     object_counts_.assign(tree_->nodes().size(), 0);
-    std::vector<std::uint32_t> order{SpatialStructure::root};
+    std::vector<std::uint32_t>& order = bvh_.tree_order_;
+    order.assign(1, SpatialStructure::root);
     for (std::size_t i = 0; i < order.size(); ++i) {
       const SpatialNode& at = tree_->nodes()[order[i]];
       for (std::uint32_t child = 0; child < at.child_count; ++child) {
@@ -211,46 +208,55 @@ class WideBvhBuilder {
 
   /// Opens the largest descendant until there are eight that are leaves or too many for one.
   void fill_collapsed(const Source& source) {
-    std::vector<std::uint32_t> open{source.tree_node};
-    while (open.size() < width) {
-      std::size_t best = open.size();
-      for (std::size_t i = 0; i < open.size(); ++i) {
+    std::array<std::uint32_t, width> open{source.tree_node};
+    std::size_t count = 1;
+    while (count < width) {
+      std::size_t best = count;
+      for (std::size_t i = 0; i < count; ++i) {
         if (object_counts_[open[i]] <= width) continue;
-        if (best == open.size() || half_area(open[i]) > half_area(open[best])) best = i;
+        if (best == count || half_area(open[i]) > half_area(open[best])) best = i;
       }
-      if (best == open.size()) break;
+      if (best == count) break;
       const SpatialNode& at = tree_->nodes()[open[best]];
       if (at.child_count == 0) throw std::logic_error("wide BVH: a leaf has more than 8 objects");
-      if (open.size() - 1 + at.child_count > width) break;
-      open.erase(open.begin() + static_cast<std::ptrdiff_t>(best));
-      for (std::uint32_t i = 0; i < at.child_count; ++i) open.push_back(at.first_child + i);
+      if (count - 1 + at.child_count > width) break;
+      std::copy(open.begin() + best + 1, open.begin() + count, open.begin() + best);
+      --count;
+      for (std::uint32_t i = 0; i < at.child_count; ++i) open[count++] = at.first_child + i;
     }
-    const auto is_inner = [&](std::uint32_t child) { return object_counts_[child] > width; };
-    std::erase_if(open, [&](std::uint32_t child) { return object_counts_[child] == 0; });
-    std::stable_partition(open.begin(), open.end(), is_inner);
-    const auto inner = static_cast<std::uint32_t>(std::ranges::count_if(open, is_inner));
-    add_children(source.node, inner, static_cast<std::uint32_t>(open.size()) - inner);
+    // Nodes first, then leaves, each in their order.
+    std::array<std::uint32_t, width> children{};
+    std::uint32_t child_count = 0;
+    const auto take = [&](auto&& wanted) {
+      for (std::size_t i = 0; i < count; ++i) {
+        if (wanted(object_counts_[open[i]])) children[child_count++] = open[i];
+      }
+    };
+    take([](std::uint32_t objects) { return objects > width; });
+    const std::uint32_t inner = child_count;
+    take([](std::uint32_t objects) { return objects > 0 && objects <= width; });
+    add_children(source.node, inner, child_count - inner);
     WideNode& at = bvh_.nodes_[source.node];
     std::uint32_t place = source.first_place;
-    for (std::uint32_t lane = 0; lane < open.size(); ++lane) {
+    for (std::uint32_t lane = 0; lane < child_count; ++lane) {
       at.first[lane] = place;
       if (lane < inner) {
-        open_.push_back({at.first_inner + lane, open[lane], place});
-        place += object_counts_[open[lane]];
+        open_.push_back({at.first_inner + lane, children[lane], place});
+        place += object_counts_[children[lane]];
       } else {
         bvh_.first_place_[at.first_leaf + lane - inner] = place;
-        place = put_objects(open[lane], place);
+        place = put_objects(children[lane], place);
       }
     }
-    at.first[open.size()] = place;
+    at.first[child_count] = place;
   }
 
   WideBvh& bvh_;
   bool medians_ = false;
   const SpatialStructure* tree_ = nullptr;
   std::span<const Aabb> boxes_;
-  std::vector<std::uint32_t> object_counts_;  // by node of the tree
-  std::vector<Source> open_;
+  std::vector<std::uint32_t>& object_counts_;  // by node of the tree
+  std::vector<Source>& open_;
 };
 
 void WideBvh::start(std::span<const Aabb> boxes, bool forget) {
@@ -292,11 +298,8 @@ void WideBvh::finish_build(std::span<const Aabb> boxes) {
     for (std::uint32_t place = first_place_[leaf]; place < end; ++place) {
       const ObjectId object = objects_[place];
       slot_[object] = leaf * width + (place - first_place_[leaf]);
-      if ((state_[object] & present) != 0) {
-        write_box(object, boxes[object]);
-      } else {
-        set_absent_bit(object, true);
-      }
+      write_box(object, boxes[object]);
+      if ((state_[object] & present) == 0) set_absent_bit(object, true);
     }
   }
   objects_.resize(placed + width, none_id);  // kernels read eight at once
@@ -312,7 +315,15 @@ void WideBvh::finish_build(std::span<const Aabb> boxes) {
   }
   area_ = 0.0;
   refit();
+  // With those that are absent: when they are shown where they are, nothing has decayed.
   area_when_built_ = area_;
+  if (absent_count_ == 0) return;
+  for (ObjectId object = 0; object < boxes.size(); ++object) {
+    if (slot_[object] == nowhere || (state_[object] & present) != 0) continue;
+    write_absent(object);
+    dirty_leaves_[slot_[object] / width / 64] |= std::uint64_t{1} << (slot_[object] / width % 64);
+  }
+  refit();
 }
 
 void WideBvh::build(std::span<const Aabb> boxes, Order order) {

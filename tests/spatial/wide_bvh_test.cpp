@@ -226,6 +226,29 @@ TEST(WideBvh, StaysRightAndKnowsThatItDecaysWhenAllMix) {
   EXPECT_EQ(answer(bvh, frustum, boxes), expected(frustum, boxes, present));
 }
 
+TEST(WideBvh, HasNotDecayedWhenWhatWasAbsentInARebuildIsShownInItsPlace) {
+  const std::vector<Aabb> boxes = field(4000, 11);
+  WideBvh bvh;
+  bvh.build(boxes, WideBvh::Order::median);
+  std::vector<bool> present(boxes.size(), true);
+  for (ObjectId object = 0; object < boxes.size(); ++object) {
+    if (object % 100 == 0) continue;
+    bvh.set_present(object, boxes[object], false);
+    present[object] = false;
+  }
+  bvh.rebuild(boxes, WideBvh::Order::morton);
+  EXPECT_LT(bvh.decay(), 1.0);
+  ASSERT_NO_THROW(bvh.audit(boxes));
+  Random random(4);
+  const Frustum frustum = frustum_of(some_camera(random));
+  EXPECT_EQ(answer(bvh, frustum, boxes), expected(frustum, boxes, present));
+  for (ObjectId object = 0; object < boxes.size(); ++object) {
+    bvh.set_present(object, boxes[object], true);
+  }
+  bvh.refit();
+  EXPECT_NEAR(bvh.decay(), 1.0, 1e-9);
+}
+
 TEST(WideBvh, DoesNotLetAFewFarObjectsBlurTheOthers) {
   std::vector<Aabb> boxes = field(4000, 13);
   for (ObjectId object = 0; object < 20; ++object) {
