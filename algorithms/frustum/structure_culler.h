@@ -72,6 +72,15 @@ class FollowedStructure {
   bool changed_ = false;             // since the scene was as built
 };
 
+/// Whether a node is outside or inside only if each object in it has that answer by itself: then
+/// answers do not show which objects share nodes. Spheres and oriented boxes may reach out of a
+/// node that is outside, and corners and meta volumes have other margins than the tests they would
+/// have to agree with.
+inline bool nodes_answer_as_objects(const ObjectTestOptions& objects, const Switches& switches) {
+  if (objects.test == ObjectTestOptions::Test::vertex) return true;
+  return objects.test == ObjectTestOptions::Test::exact && switches.meta == Switches::Meta::off;
+}
+
 /// A culler that walks a structure from its root (traversal.h).
 template <typename Structure>
 class StructureCuller : public ICuller {
@@ -85,9 +94,10 @@ class StructureCuller : public ICuller {
         tester_(read_switches(values)),
         objects_(read_object_test(values, false)),
         traversal_(read_node_policy(values)) {
-    // How deep objects lie in the structure depends on where they were before.
+    // Which objects share nodes depends on where they were before.
     const bool structure_shows =
-        read_node_policy(values) == NodePolicy::keep || followed_.structure().repeats_objects();
+        read_node_policy(values) == NodePolicy::keep || followed_.structure().repeats_objects() ||
+        !nodes_answer_as_objects(read_object_test(values, false), tester_.switches());
     info_.repeatability =
         structure_shows ? Repeatability::path : tester_.switches().repeatability();
   }
@@ -149,8 +159,8 @@ class StructureCuller : public ICuller {
 };
 
 /// The parts of the declaration that all of them have in common. `own`: the structure's parameters.
-/// Repeatability: path if the answers show the structure (objects that are repeated), which depends
-/// on where objects were before.
+/// Repeatability, by default: path if the answers show the structure (objects that are repeated),
+/// which depends on where objects were before. Other tests of objects can show it too.
 inline CullerInfo structure_culler_info(std::string name, Repeatability repeatability,
                                         std::vector<ParameterSpec> own,
                                         ParameterSpec intersecting) {
