@@ -331,8 +331,8 @@ std::size_t FlatBoxes::bytes() const {
          (shown_.capacity() + strays_.capacity() + kept_.capacity()) * sizeof(std::uint64_t) +
          (object_at_.capacity() + slot_of_.capacity() + dirty_list_.capacity()) *
              sizeof(std::uint32_t) +
-         centers_.capacity() * sizeof(Center) + is_shown_.capacity() + states_.capacity() +
-         dirty_.capacity();
+         centers_.capacity() * sizeof(Center) + scratch_.capacity() * sizeof(float) +
+         is_shown_.capacity() + states_.capacity() + dirty_.capacity();
 }
 
 std::size_t select_ids(std::span<const std::uint64_t> words, std::span<const ObjectId> ids,

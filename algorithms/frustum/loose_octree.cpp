@@ -10,7 +10,8 @@
 // Limits: as overlap grows, fewer objects stay near the root, but the enlarged nodes touch the
 //   frustum more often: there is a best value for each scene. Objects outside of the root that was
 //   laid around the scene as built are tested one by one until they are the majority.
-// Sources: engine report (2005), 2.2.1-2.2.3 and 3; Ulrich 2000, Loose Octrees.
+// Sources: Gschwantner and Hebart 2007 (engine report), 2.2.1-2.2.3 and 3; Ulrich 2000, Loose
+// Octrees.
 
 #include "common/spatial/loose_octree.h"
 #include "algorithms/frustum/structure_culler.h"
@@ -47,7 +48,7 @@ CullerInfo describe() {
   info.limits =
       "Without overlap, objects on the main planes are looked at in every frame; with much of it, "
       "too many nodes touch the frustum. Objects outside of the root are tested one by one.";
-  info.sources = {"Engine report (2005), 2.2.1-2.2.3 and 3",
+  info.sources = {"Gschwantner and Hebart 2007 (engine report), 2.2.1-2.2.3 and 3",
                   "Ulrich 2000, Loose Octrees (Game Programming Gems)",
                   "Assarsson and Moeller 2000, Optimized View Frustum Culling Algorithms for "
                   "Bounding Boxes"};

@@ -85,7 +85,9 @@ class MeshOctree : public ICuller {
   }
 
   std::size_t bytes() const override {
-    std::size_t bytes = 0;
+    std::size_t bytes = stack_.capacity() * sizeof(Item) +
+                        runs_.capacity() * sizeof(TriangleOctree::Run) +
+                        kept_.capacity() * sizeof(TriangleRange) + tester_.bytes();
     for (const TriangleOctree& tree : trees_) bytes += sizeof tree + tree.bytes();
     return bytes;
   }

@@ -92,7 +92,8 @@ void BulletTree::cull(const Frustum& frustum, std::vector<ObjectId>& kept) const
 std::size_t BulletTree::bytes() const {
   const auto leaves = static_cast<std::size_t>(state_->tree.m_leaves);
   const std::size_t nodes = leaves > 0 ? 2 * leaves - 1 : 0;
-  return nodes * sizeof(btDbvtNode) + state_->leaves.capacity() * sizeof(btDbvtNode*);
+  return nodes * sizeof(btDbvtNode) + state_->leaves.capacity() * sizeof(btDbvtNode*) +
+         state_->apart.capacity() * sizeof(ObjectId);
 }
 
 }  // namespace vislab::peers

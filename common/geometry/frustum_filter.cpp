@@ -17,7 +17,7 @@ FrustumFilter::FrustumFilter(const Frustum& frustum, const glm::vec3& origin, fl
   // of the plane, one of the coordinate, and four of the sum. Eight leave room for what is of
   // second order.
   constexpr double float_roundings = 8.0 * 0.5 * std::numeric_limits<float>::epsilon();
-  // The double test's own error bound is 16 epsilon (distance_error in frustum.cpp), on either side
+  // The double test's own error bound is 16 epsilon (distance_error in frustum.h), on either side
   // of its threshold; as much again covers the shift to the origin.
   constexpr double double_roundings = 64.0 * std::numeric_limits<double>::epsilon();
   // Far below any scene's precision, and large enough that products with the scaled planes do not
