@@ -304,6 +304,7 @@ Fields report_fields(const ReportInput& input, const std::string& verdict_templa
   Fields fields;
   fields.values["method_count"] = format_count(count_distinct(input.blocks, true));
   fields.values["scene_count"] = format_count(count_distinct(input.blocks, false));
+  auto& scenes = fields.lists["scenes"];  // stays empty if only sweeps were run
   auto& floors = fields.lists["floors"];
   auto& noises = fields.lists["noises"];
   for (std::size_t i = 0; i < input.blocks.size(); ++i) {
@@ -316,7 +317,7 @@ Fields report_fields(const ReportInput& input, const std::string& verdict_templa
     }
     noise.values["noise"] = block.drawn ? format_estimate(block.noise) : "nothing drawn";
     noises.push_back(std::move(noise));
-    fields.lists["scenes"].push_back(std::move(scene));
+    scenes.push_back(std::move(scene));
   }
   fields.flag("has_floors", !floors.empty());
   fields.lists["guides"] = guide_fields(input.blocks);
