@@ -1,12 +1,6 @@
 #include "algorithms/frustum/mesh_planes.h"
 
 namespace vislab::frustum_culling {
-namespace {
-
-double absolute_sum(const glm::dvec3& p) { return std::abs(p.x) + std::abs(p.y) + std::abs(p.z); }
-
-}  // namespace
-
 void MeshPlanes::set(const Frustum& frustum, unsigned mask, const glm::dmat4x3& transform,
                      const Aabb& bounds) {
   const glm::dvec3 reach =

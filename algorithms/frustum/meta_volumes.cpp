@@ -10,8 +10,6 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-double absolute_sum(const glm::dvec3& p) { return std::abs(p.x) + std::abs(p.y) + std::abs(p.z); }
-
 }  // namespace
 
 MetaVolumes::MetaVolumes(const Camera& camera) {

@@ -16,8 +16,6 @@ constexpr double angle_tolerance = 1e-10;
 constexpr double axis_tolerance = 1e-11;
 constexpr double limit_margin = 1e-6;
 
-double absolute_sum(const glm::dvec3& p) { return std::abs(p.x) + std::abs(p.y) + std::abs(p.z); }
-
 /// Sum of the largest absolute coordinates of a box, seen from `origin`.
 double reach(const Aabb& box, const glm::dvec3& origin) {
   return absolute_sum(

@@ -43,6 +43,12 @@ Aabb transformed(const Aabb& box, const glm::dmat4x3& transform) {
   return result;
 }
 
+double half_area(const Aabb& box) {
+  if (box.empty()) return 0.0;
+  const glm::dvec3 size = glm::dvec3(box.max) - glm::dvec3(box.min);
+  return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
 double distance_squared(const Aabb& box, const glm::dvec3& p) {
   const glm::dvec3 gap = glm::max(glm::max(glm::dvec3(box.min) - p, p - glm::dvec3(box.max)), 0.0);
   return glm::dot(gap, gap);

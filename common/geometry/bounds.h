@@ -2,6 +2,7 @@
 // always rounded outward, so that what they enclose is enclosed in exact arithmetic too.
 #pragma once
 
+#include <cmath>
 #include <glm/glm.hpp>
 #include <glm/mat4x3.hpp>
 #include <limits>
@@ -21,6 +22,11 @@ struct Plane {
 
   double signed_distance(const glm::dvec3& p) const { return glm::dot(normal, p) + d; }
 };
+
+/// |x| + |y| + |z|: what bounds the rounding of a scalar product with a unit vector.
+inline double absolute_sum(const glm::dvec3& p) {
+  return std::abs(p.x) + std::abs(p.y) + std::abs(p.z);
+}
 
 /// Plane through three points; the inside is where they appear counter-clockwise. The points must
 /// not be collinear.
@@ -51,6 +57,10 @@ struct Aabb {
     max = glm::max(max, box.max);
   }
   bool contains(const glm::dvec3& p) const;
+  /// Does the other box lie in this one, its border included? Neither is to be empty.
+  bool contains(const Aabb& box) const {
+    return glm::all(glm::lessThanEqual(min, box.min)) && glm::all(glm::lessThanEqual(box.max, max));
+  }
 
   friend bool operator==(const Aabb&, const Aabb&) = default;
 };
@@ -62,6 +72,9 @@ Aabb bounds_of(std::span<const glm::vec3> points);
 /// outward. An empty box stays empty.
 Aabb transformed(const Aabb& box, const glm::dmat4x3& transform);
 
+/// Half the box's surface, metres squared; 0 of an empty box.
+double half_area(const Aabb& box);
+
 /// Squared distance of a point from a box, metres squared; 0 inside.
 double distance_squared(const Aabb& box, const glm::dvec3& p);
 
@@ -70,8 +83,8 @@ struct Sphere {
   float radius = 0.0F;
 };
 
-/// The sphere around the box's centre through its corners, radius rounded up. If the box is not valid
-/// the radius is NaN, and no test culls it.
+/// The sphere around the box's centre through its corners, radius rounded up. If the box is not
+/// valid the radius is NaN, and no test culls it.
 Sphere circumscribed(const Aabb& box);
 
 }  // namespace vislab

@@ -1,12 +1,6 @@
 #include "common/geometry/frustum.h"
 
 namespace vislab {
-namespace {
-
-double absolute_sum(const glm::dvec3& p) { return std::abs(p.x) + std::abs(p.y) + std::abs(p.z); }
-
-}  // namespace
-
 Frustum frustum_of(const Camera& camera) {
   const auto& [eye, right, up, back] = camera.pose;
   const Lens& lens = camera.lens;

@@ -5,12 +5,6 @@
 #include <limits>
 
 namespace vislab {
-namespace {
-
-double absolute_sum(const glm::dvec3& p) { return std::abs(p.x) + std::abs(p.y) + std::abs(p.z); }
-
-}  // namespace
-
 FrustumFilter::FrustumFilter(const Frustum& frustum, const glm::vec3& origin, float extent)
     : count_(frustum.plane_count) {
   // Rounding to nearest is off by at most half of epsilon. Of each of the four terms: one rounding

@@ -15,8 +15,6 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-double absolute_sum(const glm::dvec3& p) { return std::abs(p.x) + std::abs(p.y) + std::abs(p.z); }
-
 /// All planes of a frustum by a test of one.
 template <typename Volume, typename Test>
 Side side_by_planes(const Frustum& frustum, const Volume& volume, std::uint64_t* planes_tested,

@@ -20,8 +20,6 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-double absolute_sum(const glm::dvec3& p) { return std::abs(p.x) + std::abs(p.y) + std::abs(p.z); }
-
 /// What contains nothing and is never culled.
 OrientedBox nothing() {
   const double nan = std::numeric_limits<double>::quiet_NaN();

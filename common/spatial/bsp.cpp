@@ -11,11 +11,6 @@ namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-/// Leaves are not split beyond this many entries.
-std::uint64_t entry_limit(std::size_t objects) {
-  return std::max<std::uint64_t>(64 * std::uint64_t{objects}, std::uint64_t{1} << 18U);
-}
-
 float centre_of(const Aabb& box, int axis) { return static_cast<float>(box.center()[axis]); }
 
 double surface(const Aabb& box) {

@@ -8,21 +8,9 @@
 namespace vislab {
 namespace {
 
-/// Half the surface, metres squared; 0 of an empty box.
-double half_area(const Aabb& box) {
-  if (box.empty()) return 0.0;
-  const glm::dvec3 size = glm::dvec3(box.max) - glm::dvec3(box.min);
-  return size.x * size.y + size.y * size.z + size.z * size.x;
-}
-
 Aabb united(Aabb a, const Aabb& b) {
   a.extend(b);
   return a;
-}
-
-bool holds(const Aabb& outer, const Aabb& inner) {
-  return glm::all(glm::lessThanEqual(outer.min, inner.min)) &&
-         glm::all(glm::lessThanEqual(inner.max, outer.max));
 }
 
 [[noreturn]] void refuse(const char* what, ObjectId object) {
@@ -88,7 +76,7 @@ void Bvh::move(ObjectId object, const Aabb& box) {
     return;
   }
   for (NodeIndex node = place.node; node != nowhere; node = links_[node].parent) {
-    if (holds(nodes_[node].box, box)) break;
+    if (nodes_[node].box.contains(box)) break;
     nodes_[node].box.extend(box);
   }
 }

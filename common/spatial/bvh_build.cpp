@@ -21,12 +21,6 @@ struct Item {
   ObjectId object;
 };
 
-double half_area(const Aabb& box) {
-  if (box.empty()) return 0.0;
-  const glm::dvec3 size = glm::dvec3(box.max) - glm::dvec3(box.min);
-  return size.x * size.y + size.y * size.z + size.z * size.x;
-}
-
 Aabb united(Aabb a, const Aabb& b) {
   a.extend(b);
   return a;

@@ -9,11 +9,6 @@
 namespace vislab {
 namespace {
 
-/// Leaves are not halved beyond this many entries.
-std::uint64_t entry_limit(std::size_t objects) {
-  return std::max<std::uint64_t>(64 * std::uint64_t{objects}, std::uint64_t{1} << 18U);
-}
-
 /// The octants of a cell halved at `middle` that a box touches which touches the cell: by axis, the
 /// lower and the upper half. Boxes that only touch a plane are in both its halves.
 struct TouchedHalves {
@@ -110,7 +105,7 @@ LeafOctree::Entry& LeafOctree::entry_of(ObjectId object, const char* what) {
 void LeafOctree::enter(ObjectId object, const Aabb& box) {
   Entry& entry = entries_of_objects_[object];
   entry.box = box;
-  if (box.valid() && holds(details_[root].cell, box)) {
+  if (box.valid() && details_[root].cell.contains(box)) {
     entry.state = State::placed;
     ++placed_;
     add(root, object, box);

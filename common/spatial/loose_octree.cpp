@@ -202,7 +202,7 @@ void LooseOctree::count(NodeIndex node, int change) {
 
 bool LooseOctree::accepts(NodeIndex node, const Entry& entry) const {
   const Aabb& loose = details_[node].loose;
-  return entry.box.valid() && holds(loose, entry.sphere) && holds(loose, entry.box);
+  return entry.box.valid() && holds(loose, entry.sphere) && loose.contains(entry.box);
 }
 
 std::uint32_t LooseOctree::octant_of(const Detail& detail, const Entry& entry) const {
@@ -216,7 +216,7 @@ bool LooseOctree::fits_an_octant(NodeIndex node, const Entry& entry) const {
   const std::uint32_t i = octant_of(detail, entry);
   if (nodes_[node].child_count != 0) return accepts(nodes_[node].first_child + i, entry);
   const Aabb loose = enlarged(octant(detail.cell, i), limits_.overlap_m);
-  return holds(loose, entry.sphere) && holds(loose, entry.box);
+  return holds(loose, entry.sphere) && loose.contains(entry.box);
 }
 
 LooseOctree::Detail LooseOctree::new_detail(const Aabb& cell, NodeIndex parent, int depth) const {

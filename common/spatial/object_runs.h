@@ -1,6 +1,7 @@
 // Many short lists of object ids that grow and shrink, in one array.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -53,5 +54,11 @@ class ObjectRuns {
     return none;
   }
 };
+
+/// A structure that repeats objects does not split leaves beyond this many entries: what is
+/// everywhere would fill the memory.
+inline std::uint64_t entry_limit(std::size_t objects) {
+  return std::max<std::uint64_t>(64 * std::uint64_t{objects}, std::uint64_t{1} << 18U);
+}
 
 }  // namespace vislab

@@ -51,11 +51,6 @@ Aabb octant(const Aabb& cell, unsigned i) {
   return result;
 }
 
-bool holds(const Aabb& outer, const Aabb& inner) {
-  return glm::all(glm::lessThanEqual(outer.min, inner.min)) &&
-         glm::all(glm::greaterThanEqual(outer.max, inner.max));
-}
-
 Aabb enlarged(const Aabb& box, double by) {
   Aabb result = box;
   if (by == 0.0) return result;

@@ -21,9 +21,6 @@ bool can_halve(const Aabb& cell);
 /// together are the cell.
 Aabb octant(const Aabb& cell, unsigned i);
 
-/// Does the inner box lie in the outer one, its border included? Neither is to be empty.
-bool holds(const Aabb& outer, const Aabb& inner);
-
 /// A float box around [min - by, max + by]; the box itself for 0.
 Aabb enlarged(const Aabb& box, double by);
 

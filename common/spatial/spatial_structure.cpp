@@ -17,11 +17,6 @@ using NodeIndex = SpatialStructure::NodeIndex;
 std::string named(ObjectId object) { return "object " + std::to_string(object); }
 std::string node_named(NodeIndex node) { return "node " + std::to_string(node); }
 
-bool holds(const Aabb& outer, const Aabb& inner) {
-  return glm::all(glm::lessThanEqual(outer.min, inner.min)) &&
-         glm::all(glm::lessThanEqual(inner.max, outer.max));
-}
-
 Aabb common_part(const Aabb& a, const Aabb& b) {
   Aabb part;
   part.min = glm::max(a.min, b.min);
@@ -136,7 +131,7 @@ class Audit {
     const Aabb part = repeats ? common_part(box, nodes[node].box) : box;
     if (part.empty()) broken(named(object) + " does not touch " + node_named(node));
     for (const NodeIndex ancestor : ancestors_) {
-      if (!holds(nodes[ancestor].box, part)) {
+      if (!nodes[ancestor].box.contains(part)) {
         broken(node_named(ancestor) + " does not hold the box of " + named(object));
       }
     }

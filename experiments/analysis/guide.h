@@ -56,5 +56,6 @@ struct CullerGuide {
 /// at most 1 % more triangles than the fewest are: deciding soon is no merit in one that keeps
 /// everything.
 std::vector<CullerGuide> make_guides(const std::vector<BlockSummary>& blocks);
+std::vector<CullerGuide> make_guides(std::vector<BlockSummary>&& blocks) = delete;  // it points in
 
 }  // namespace vislab

@@ -37,9 +37,10 @@ BlockSummary undrawn(BlockSummary block) {
 }
 
 TEST(Guide, NamesTheRightMethodThatCostsLeastAndTheNextAndTheSoonest) {
-  const auto guides =
-      make_guides({block_with("s", {method("frustum.a", 9.0, 2.0), method("frustum.b", 4.0, 3.0),
-                                    method("frustum.c", 19.0, 4.0)})});
+  const std::vector<BlockSummary> blocks{
+      block_with("s", {method("frustum.a", 9.0, 2.0), method("frustum.b", 4.0, 3.0),
+                       method("frustum.c", 19.0, 4.0)})};
+  const auto guides = make_guides(blocks);
   ASSERT_EQ(guides.size(), 1U);
   EXPECT_EQ(guides[0].culls, Culls::outside_frustum);
   ASSERT_EQ(guides[0].rows.size(), 1U);
@@ -57,7 +58,8 @@ TEST(Guide, WhereNothingIsDrawnAMethodThatHardlyCullsCannotWin) {
   for (CellSummary& cell : cells) cell.submitted_triangles = 1000.0;
   cells[0].submitted_triangles = 1011.0;
   cells[2].submitted_triangles = 1009.0;
-  const auto guides = make_guides({undrawn(block_with("s", cells))});
+  const std::vector<BlockSummary> blocks{undrawn(block_with("s", cells))};
+  const auto guides = make_guides(blocks);
   ASSERT_EQ(guides.size(), 1U);
   EXPECT_EQ(guides[0].rows[0].best->culler, "frustum.c");
   EXPECT_EQ(guides[0].advice.at(0).eligible, 3U);
@@ -66,9 +68,10 @@ TEST(Guide, WhereNothingIsDrawnAMethodThatHardlyCullsCannotWin) {
 TEST(Guide, MethodsOfAllFamiliesThatCullTheSameCompete) {
   CellSummary other = method("backface.x", 1.0, 1.0);
   other.culls = Culls::back_faces;
-  const auto guides =
-      make_guides({block_with("s", {method("frustum.a", 9.0, 4.0), method("frustum.b", 9.0, 3.0),
-                                    method("peer.c", 9.0, 2.0), other})});
+  const std::vector<BlockSummary> blocks{
+      block_with("s", {method("frustum.a", 9.0, 4.0), method("frustum.b", 9.0, 3.0),
+                       method("peer.c", 9.0, 2.0), other})};
+  const auto guides = make_guides(blocks);
   ASSERT_EQ(guides.size(), 1U);
   EXPECT_EQ(guides[0].rows[0].best->culler, "peer.c");
 }
@@ -89,10 +92,12 @@ TEST(Guide, MethodsWithErrorsChainsAnchorsAndNegativeControlsDoNotCount) {
                                  method("frustum.a > backface.b", 1.0, 1.0),
                                  method("frustum.a", 5.0, 1.0),
                                  method("frustum.b", 6.0, 1.0)};
-  EXPECT_TRUE(make_guides({block_with("s", cells)}).empty()) << "only two are left";
+  const std::vector<BlockSummary> too_few{block_with("s", cells)};
+  EXPECT_TRUE(make_guides(too_few).empty()) << "only two are left";
   cells.push_back(method("frustum.c", 7.0, 1.0));
-  ASSERT_EQ(make_guides({block_with("s", cells)}).size(), 1U);
-  EXPECT_EQ(make_guides({block_with("s", cells)})[0].rows[0].best->culler, "frustum.a");
+  const std::vector<BlockSummary> enough{block_with("s", cells)};
+  ASSERT_EQ(make_guides(enough).size(), 1U);
+  EXPECT_EQ(make_guides(enough)[0].rows[0].best->culler, "frustum.a");
 }
 
 TEST(Guide, AdviceIsTheLeastMeanRatioAndTellsMovingScenesApart) {
@@ -104,7 +109,8 @@ TEST(Guide, AdviceIsTheLeastMeanRatioAndTellsMovingScenesApart) {
       block_with("moving", {method("frustum.a", 999.0, 1.0), method("frustum.b", 9.0, 1.0),
                             method("frustum.c", 19.0, 1.0)});
   moving.moving_objects = 50.0;
-  const auto guides = make_guides({undrawn(still), undrawn(moving)});
+  const std::vector<BlockSummary> blocks{undrawn(still), undrawn(moving)};
+  const auto guides = make_guides(blocks);
   ASSERT_EQ(guides.at(0).advice.size(), 3U);
   EXPECT_EQ(guides[0].advice[0].choice.culler, "frustum.c");
   EXPECT_EQ(guides[0].advice[0].choice.wins, 0);
@@ -113,7 +119,10 @@ TEST(Guide, AdviceIsTheLeastMeanRatioAndTellsMovingScenesApart) {
   EXPECT_EQ(guides[0].advice[2].choice.culler, "frustum.b");
 }
 
-TEST(Guide, NothingMeasuredGivesNoGuide) { EXPECT_TRUE(make_guides({}).empty()); }
+TEST(Guide, NothingMeasuredGivesNoGuide) {
+  const std::vector<BlockSummary> none;
+  EXPECT_TRUE(make_guides(none).empty());
+}
 
 TEST(Published, OwnRatiosAreThoseOfTheRowsSceneAndMethods) {
   const std::vector<BlockSummary> blocks{

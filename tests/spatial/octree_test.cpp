@@ -66,7 +66,7 @@ TEST(OctreeCells, ShareTheirPlanesToTheLastBit) {
   while (can_halve(cell)) {
     for (unsigned i = 0; i < 8; ++i) {
       const Aabb part = octant(cell, i);
-      EXPECT_TRUE(holds(cell, part));
+      EXPECT_TRUE(cell.contains(part));
       for (const unsigned axis : {0U, 1U, 2U}) {
         const Aabb neighbour = octant(cell, i ^ (1U << axis));
         const int a = static_cast<int>(axis);
