@@ -56,8 +56,7 @@ TEST(Stress, TheAtlasTellsWhereMethodsBreakAndWhetherThatWasExpected) {
   const std::string results = folder.path() / "results";
   ASSERT_EQ(run_vislab({"run", "box_in_frustum", "--results", results, "--quiet"}).exit_code, 0);
   const ProgramResult atlas = run_vislab({"atlas", "--results", results, "--json"});
-  const bool differs = atlas.out.find("\"differs\"") != std::string::npos;
-  EXPECT_EQ(atlas.exit_code, differs ? 1 : 0) << atlas.out;
+  EXPECT_EQ(atlas.exit_code, 0) << "nothing broke that never should: " << atlas.out;
   EXPECT_NE(atlas.err.find("not run: "), std::string::npos);
   std::map<std::string, nlohmann::json> rows;
   for (const auto& row : objects(atlas.out)) rows[row.at("culler")] = row;
