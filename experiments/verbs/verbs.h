@@ -59,8 +59,8 @@ int compare(const Lab& lab, const std::string& a, const std::string& b,
 int export_results(const Lab& lab, const std::string& format, const std::filesystem::path& results);
 int report(const Lab& lab, const std::filesystem::path& results,
            const std::filesystem::path& output);
-/// The break points of all stress sweeps that were run. 1 if a promise is broken, or a method breaks
-/// that never should.
+/// The break points of all stress sweeps that were run. 1 if a promise is broken, or a method
+/// breaks that never should.
 int atlas(const Lab& lab, const std::filesystem::path& results, bool json);
 int check(const Lab& lab, const std::string& culler, bool json);
 
