@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/culler/candidates.h"
+#include "common/culler/cost_table.h"
 #include "common/culler/parameters.h"
 #include "common/render/device.h"
 
@@ -85,6 +86,7 @@ struct BuildContext {
   const Registry* cullers = nullptr;   // to make other cullers; null in minimal set-ups
   const TruthSource* truth = nullptr;  // null unless oracles are to run
   RenderDevice* device = nullptr;      // null when nothing is drawn
+  const CostTable* costs = nullptr;    // as measured here; null: CostTable::typical()
   int threads = 1;                     // how many the culler may use
 };
 
