@@ -150,6 +150,27 @@ RibbedSphereSource read_ribbed_sphere(const Settings& table) {
   return sphere;
 }
 
+BumpySphereParameters read_bumpy_sphere(const Settings& table) {
+  BumpySphereParameters sphere;
+  sphere.subdivisions =
+      static_cast<std::uint32_t>(table.whole("subdivisions", 1, 1000, sphere.subdivisions));
+  const std::string bumps = table.text("bumps", "none");
+  if (bumps == "low") {
+    sphere.bumps = Bumps::low;
+  } else if (bumps == "high") {
+    sphere.bumps = Bumps::high;
+  } else if (bumps != "none") {
+    throw InputError(table.where() + ": " +
+                     unknown_name("kind of bumps", bumps, {"none", "low", "high"}).what());
+  }
+  sphere.hole = table.number("hole", 0.0, 0.9, sphere.hole);
+  sphere.mesh_offset = table.point("mesh_offset", sphere.mesh_offset);
+  if (glm::length(sphere.mesh_offset) > 1e6) {
+    throw InputError(table.where() + ": `mesh_offset` is wrong; it must be at most 1e6 m long");
+  }
+  return sphere;
+}
+
 PlacedMesh read_placed(const Settings& table) {
   PlacedMesh placed;
   if (!table.has("shape")) {
@@ -197,6 +218,8 @@ void read_generator(const Settings& table, SceneDescription& scene) {
     scene.source = read_asteroid_belt(table);
   } else if (kind == "box_field") {
     scene.source = read_box_field(table);
+  } else if (kind == "bumpy_sphere") {
+    scene.source = read_bumpy_sphere(table);
   } else if (kind == "city") {
     scene.source = read_city(table);
   } else if (kind == "hares") {
@@ -208,9 +231,9 @@ void read_generator(const Settings& table, SceneDescription& scene) {
   } else if (kind == "room_ring") {
     scene.source = read_room_ring(table);
   } else {
-    const InputError unknown = unknown_name(
-        "generator", kind,
-        {"asteroid_belt", "box_field", "city", "hares", "houses", "mesh_field", "room_ring"});
+    const InputError unknown = unknown_name("generator", kind,
+                                            {"asteroid_belt", "box_field", "bumpy_sphere", "city",
+                                             "hares", "houses", "mesh_field", "room_ring"});
     throw InputError(table.where() + ": " + unknown.what());
   }
   table.done();

@@ -70,8 +70,8 @@ struct SceneDescription {
   std::string default_path;  // empty: fitted to the scene
   glm::dvec3 offset{0.0};    // added to all objects' places, metres
   std::variant<MeshSource, QuakeSource, std::vector<PlacedMesh>, HaresSource, MeshFieldSource,
-               AsteroidBeltParameters, BoxFieldParameters, CityParameters, HousesParameters,
-               RoomRingParameters>
+               AsteroidBeltParameters, BoxFieldParameters, BumpySphereParameters, CityParameters,
+               HousesParameters, RoomRingParameters>
       source;
 };
 

@@ -103,6 +103,7 @@ class Maker {
   Scene operator()(const HousesParameters& houses) const { return make_houses(houses); }
   Scene operator()(const AsteroidBeltParameters& belt) const { return make_asteroid_belt(belt); }
   Scene operator()(const BoxFieldParameters& field) const { return make_box_field(field); }
+  Scene operator()(const BumpySphereParameters& sphere) const { return make_bumpy_sphere(sphere); }
   Scene operator()(const CityParameters& city) const { return make_city(city); }
   Scene operator()(const RoomRingParameters& ring) const { return make_room_ring(ring); }
 

@@ -53,6 +53,16 @@ TEST(BoxField, AMillionBoxesShareOneMesh) {
   EXPECT_EQ(scene.object_of(11'999'999U), 999'999U);
 }
 
+TEST(BoxField, ABoxOfNoHeightIsItsUpperFaceAndAnyOtherIsClosed) {
+  const Mesh upper = box_mesh({2.0, 0.0, 0.5}, 3, 1.0);
+  EXPECT_EQ(upper.triangles.size(), 18U);
+  EXPECT_EQ(upper.positions.size(), 16U);
+  const Mesh box = box_mesh({2.0, 1.0, 0.5}, 3, 9.0);
+  EXPECT_EQ(box.triangles.size(), 108U);
+  EXPECT_EQ(box.positions.size(), 56U);
+  EXPECT_TRUE(is_closed_outward(box));
+}
+
 TEST(Hares, AreDealtOutwardAlongTheAxes) {
   HaresParameters parameters;
   parameters.count = 14;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/geometry/random.h"
+#include "common/scene/generators/cube_lattice.h"
 #include "common/scene/generators/generators.h"
 #include "common/scene/orientation.h"
 
@@ -74,45 +75,14 @@ glm::dmat4x3 random_box(const BoxFieldParameters& parameters, const glm::dvec3& 
 
 Mesh box_mesh(const glm::dvec3& half_size, std::uint32_t subdivisions, double density_ratio) {
   const std::vector<double> places = cuts(subdivisions, std::sqrt(density_ratio));
-  const std::uint32_t n = subdivisions + 1;
-  std::vector<std::uint32_t> numbers(static_cast<std::size_t>(n) * n * n, none_id);
+  CubeLattice lattice = cube_lattice(subdivisions, half_size.y == 0.0);
   Mesh mesh;
   mesh.name = "box";
-  const auto vertex = [&](const glm::uvec3& at) {
-    std::uint32_t& number = numbers[(static_cast<std::size_t>(at.z) * n + at.y) * n + at.x];
-    if (number == none_id) {
-      number = static_cast<std::uint32_t>(mesh.positions.size());
-      mesh.positions.emplace_back(half_size.x * places[at.x], half_size.y * places[at.y],
-                                  half_size.z * places[at.z]);
-    }
-    return number;
-  };
-  for (int axis = 0; axis < 3; ++axis) {
-    if (half_size.y == 0.0 && axis != 1) continue;
-    for (const bool far_side : {false, true}) {
-      if (half_size.y == 0.0 && !far_side) continue;
-      // u, v and the outward normal are right-handed.
-      const int u = (axis + (far_side ? 1 : 2)) % 3;
-      const int v = (axis + (far_side ? 2 : 1)) % 3;
-      for (std::uint32_t i = 0; i < subdivisions; ++i) {
-        for (std::uint32_t j = 0; j < subdivisions; ++j) {
-          glm::uvec3 at(0U);
-          at[axis] = far_side ? subdivisions : 0;
-          at[u] = i;
-          at[v] = j;
-          const std::uint32_t a = vertex(at);
-          at[u] = i + 1;
-          const std::uint32_t b = vertex(at);
-          at[v] = j + 1;
-          const std::uint32_t c = vertex(at);
-          at[u] = i;
-          const std::uint32_t d = vertex(at);
-          mesh.triangles.emplace_back(a, b, c);
-          mesh.triangles.emplace_back(a, c, d);
-        }
-      }
-    }
+  for (const glm::uvec3& at : lattice.vertices) {
+    mesh.positions.emplace_back(half_size.x * places[at.x], half_size.y * places[at.y],
+                                half_size.z * places[at.z]);
   }
+  mesh.triangles = std::move(lattice.triangles);
   return mesh;
 }
 

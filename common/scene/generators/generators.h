@@ -120,6 +120,28 @@ Scene make_houses(const HousesParameters& parameters);
 /// with a gable roof, and windows above about 80. Closed; `triangles` must be even and at least 8.
 Mesh house_mesh(std::uint32_t triangles, std::uint64_t seed);
 
+enum class Bumps { none, low, high };
+
+struct BumpySphereParameters {
+  std::uint32_t subdivisions = 96;  // n, of each edge of the cube
+  Bumps bumps = Bumps::none;
+  double hole = 0.0;            // share of the surface that is left out, below 1
+  glm::dvec3 mesh_offset{0.0};  // of the sphere's middle from the mesh's own origin, metres
+};
+
+/// A sphere of radius 1 about `mesh_offset`, tessellated as a cube whose sides are grids of n x n
+/// squares, taken to the sphere by normalising: 12 n^2 triangles, row by row; 1,002,252 for n =
+/// 289. By the unit vector (x, y, z) of a vertex its radius is
+///   low   1 + 0.05 (sin 9x sin(8y + 1) sin(7z + 2) + 0.4 sin(23x + 3) sin 21y)
+///   high  1 + 0.02 sin 60x sin(60y + 1) sin(60z + 2)
+/// A hole leaves out the triangles whose middles lie in a cap about +x, of that share of all
+/// directions; the mesh is then open. Without a hole it is closed. O(n^2).
+Mesh bumpy_sphere_mesh(const BumpySphereParameters& parameters);
+
+/// The same as a scene. Its object's transform takes `mesh_offset` back: the sphere is about the
+/// world's origin whatever the offset, which only costs the vertices precision.
+Scene make_bumpy_sphere(const BumpySphereParameters& parameters);
+
 /// A flattened sphere of radius 1 with ribs from pole to pole, like a pumpkin: 2 * meridians *
 /// parallels triangles, meridians * parallels + 2 vertices; closed. Needs 3 meridians and 1
 /// parallel.
