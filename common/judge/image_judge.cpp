@@ -16,8 +16,9 @@ struct ImageJudge::Impl {
 
   explicit Impl(const Scene& s) : scene(s) { device.load(scene); }
 
-  std::vector<TriangleId> draw(const Frame& frame) {
+  std::vector<TriangleId> draw(const Frame& frame, std::span<const ObjectId> one_sided) {
     device.begin_frame(frame);
+    device.cull_back_faces(one_sided);
     device.draw_ids(ranges);
     return device.read_ids();
   }
@@ -55,10 +56,11 @@ void ImageJudge::start(const Frame& frame, const FrameTruth& truth) {
   for (const ObjectId object : frame.objects.shown) {
     impl_->ranges.push_back({object, 0, impl_->scene.triangle_count(object)});
   }
-  impl_->full = impl_->draw(frame);
+  impl_->full = impl_->draw(frame, {});
 }
 
-ImageVerdict ImageJudge::judge(const Frame& frame, const VisibleSet& kept) {
+ImageVerdict ImageJudge::judge(const Frame& frame, const VisibleSet& kept,
+                               std::span<const ObjectId> one_sided) {
   const Scene& scene = impl_->scene;
   impl_->ranges.clear();
   for (const VisibleSet::Run& run : kept.runs()) {
@@ -71,7 +73,7 @@ ImageVerdict ImageJudge::judge(const Frame& frame, const VisibleSet& kept) {
       done += count;
     }
   }
-  const auto [disputed, undisputed] = impl_->compare(frame, impl_->draw(frame));
+  const auto [disputed, undisputed] = impl_->compare(frame, impl_->draw(frame, one_sided));
   return {undisputed, disputed};
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "common/culler/visible_set.h"
 #include "common/judge/disputed.h"
@@ -22,11 +23,13 @@ class ImageJudge {
   /// which outlives the calls of judge() and error_floor(). Once a frame, before them.
   void start(const Frame& frame, const FrameTruth& truth);
 
-  /// Differences between the image of `kept` and the full image. A differing pixel is excused if it
-  /// is disputed between its two triangles; or, where the full image itself differs from truth, if
-  /// truth's triangle is disputed with either of them: at its edge the rasteriser may see what lies
-  /// behind it.
-  ImageVerdict judge(const Frame& frame, const VisibleSet& kept);
+  /// Differences between the image of `kept` and the full image. The device leaves out the backs of
+  /// `one_sided` objects (RenderDevice::one_sided), as it did for the culler. A differing pixel is
+  /// excused if it is disputed between its two triangles; or, where the full image itself differs
+  /// from truth, if truth's triangle is disputed with either of them: at its edge the rasteriser
+  /// may see what lies behind it.
+  ImageVerdict judge(const Frame& frame, const VisibleSet& kept,
+                     std::span<const ObjectId> one_sided = {});
 
   /// Differences between truth at the pixel centres and the full image: how many are disputed (the
   /// error floor), and how many are not (a fault of the judge itself).

@@ -24,11 +24,21 @@ class RenderDevice {
   virtual void begin_frame(const Frame& frame) = 0;
 
   /// Draws whole objects, or ranges of their triangles, in this order, both sides of every
-  /// triangle. Returns before the drawing is done. The spans need not outlive the call. A device
-  /// call of at most a few microseconds for each object (one draw per object, indirect); ranges of
-  /// one object that follow each other are compacted into one draw.
+  /// triangle (but see cull_back_faces). Returns before the drawing is done. The spans need not
+  /// outlive the call. A device call of at most a few microseconds for each object (one draw per
+  /// object, indirect); ranges of one object that follow each other are compacted into one draw.
   virtual void draw(std::span<const ObjectId> objects) = 0;
   virtual void draw(std::span<const TriangleRange> ranges) = 0;
+
+  /// From now on in this frame the device itself leaves out the triangles of these objects that it
+  /// sees from behind (OpenGL's culling of faces): it decides in the window, after vertices are
+  /// rounded to its grid, and turns with mirroring transforms. All that is submitted is still
+  /// transformed. Objects whose transforms are so flat that rounding may turn triangles over keep
+  /// both sides. begin_frame forgets it; an object may be named twice.
+  virtual void cull_back_faces(std::span<const ObjectId> objects) = 0;
+  /// The objects whose backs are left out now, each once, in the order in which they were named.
+  /// Valid until the next call of cull_back_faces, begin_frame or load.
+  virtual std::span<const ObjectId> one_sided() const = 0;
 
   /// Asks how many samples of the image the faces of these world boxes would add to what is drawn
   /// so far; writes neither ids nor depth. The boxes must not touch the near region (see

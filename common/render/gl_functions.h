@@ -48,6 +48,7 @@ namespace vislab {
   F(GLENDQUERY, EndQuery)                                         \
   F(GLFINISH, Finish)                                             \
   F(GLFLUSH, Flush)                                               \
+  F(GLFRONTFACE, FrontFace)                                       \
   F(GLGETERROR, GetError)                                         \
   F(GLGETINTEGERV, GetIntegerv)                                   \
   F(GLGETPROGRAMINFOLOG, GetProgramInfoLog)                       \

@@ -1,9 +1,24 @@
 #include "common/render/gl_scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 namespace vislab {
+namespace {
+
+/// The sign of the transform's determinant; 0 if rounding its entries and what it transforms to
+/// float may turn it.
+double handedness(const glm::dmat4x3& m) {
+  const glm::dvec3 forward(m[1].y * m[2].z, m[1].z * m[2].x, m[1].x * m[2].y);
+  const glm::dvec3 backward(m[1].z * m[2].y, m[1].x * m[2].z, m[1].y * m[2].x);
+  const double determinant = glm::dot(m[0], forward - backward);
+  const double size = glm::dot(glm::abs(m[0]), glm::abs(forward) + glm::abs(backward));
+  constexpr double rounding = 1e-5;
+  return std::abs(determinant) > rounding * size ? determinant : 0.0;
+}
+
+}  // namespace
 
 void StreamBuffer::upload(const GlFunctions& gl, GLuint name, const void* data, std::size_t bytes) {
   if (bytes > capacity_) {
@@ -63,6 +78,8 @@ void GlScene::load(const Scene& scene) {
                       static_cast<GLsizeiptr>(objects.size() * sizeof(TransformRows)), nullptr,
                       GL_DYNAMIC_DRAW);
   uploaded_.clear();
+  turn_of_.assign(scene.object_count(), Turn::any);
+  one_sided_.clear();
 }
 
 void GlScene::reserve_indices(std::size_t compacted) {
@@ -116,26 +133,69 @@ void GlScene::bind(bool each_range) {
   gl_.BindBuffer(GL_DRAW_INDIRECT_BUFFER, buffers_[commands]);
 }
 
+void GlScene::cull_back_faces(std::span<const ObjectId> objects) {
+  for (const ObjectId object : objects) {
+    if (turn_of_[object] != Turn::any) continue;
+    const double side = handedness(uploaded_[object]);
+    if (side == 0.0) continue;
+    turn_of_[object] = side > 0.0 ? Turn::counter_clockwise : Turn::clockwise;
+    one_sided_.push_back(object);
+  }
+}
+
+void GlScene::draw_both_sides() {
+  for (const ObjectId object : one_sided_) turn_of_[object] = Turn::any;
+  one_sided_.clear();
+}
+
+void GlScene::select(Turn turn) {
+  if (turn == Turn::any) {
+    gl_.Disable(GL_CULL_FACE);
+    return;
+  }
+  gl_.Enable(GL_CULL_FACE);
+  gl_.CullFace(GL_BACK);
+  gl_.FrontFace(turn == Turn::clockwise ? GL_CW : GL_CCW);
+}
+
+void GlScene::add_command(const DrawCommand& command, ObjectId object) {
+  commands_.push_back(command);
+  turns_.push_back(turn_of_[object]);
+}
+
 void GlScene::draw_commands() {
   if (commands_.empty()) return;
   command_stream_.upload(gl_, buffers_[commands], commands_.data(),
                          commands_.size() * sizeof(DrawCommand));
-  gl_.MultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr,
-                                static_cast<GLsizei>(commands_.size()), sizeof(DrawCommand));
+  Turn selected = Turn::any;
+  for (std::size_t begin = 0; begin < commands_.size();) {
+    std::size_t end = begin + 1;
+    while (end < commands_.size() && turns_[end] == turns_[begin]) ++end;
+    if (turns_[begin] != selected) select(selected = turns_[begin]);
+    gl_.MultiDrawElementsIndirect(
+        GL_TRIANGLES, GL_UNSIGNED_INT,
+        reinterpret_cast<const void*>(begin * sizeof(DrawCommand)),  // offset into the buffer
+        static_cast<GLsizei>(end - begin), sizeof(DrawCommand));
+    begin = end;
+  }
+  if (selected != Turn::any) select(Turn::any);
 }
 
 void GlScene::draw(std::span<const ObjectId> objects) {
   commands_.clear();
+  turns_.clear();
   for (const ObjectId object : objects) {
     const MeshPlace& place = places_[scene_->objects[object].mesh];
-    commands_.push_back(
-        {3 * scene_->triangle_count(object), 1, place.first_index, place.base_vertex, object});
+    add_command(
+        {3 * scene_->triangle_count(object), 1, place.first_index, place.base_vertex, object},
+        object);
   }
   draw_commands();
 }
 
 void GlScene::draw(std::span<const TriangleRange> ranges) {
   commands_.clear();
+  turns_.clear();
   compacted_.clear();
   for (std::size_t begin = 0; begin < ranges.size();) {
     // The ranges that belong together, and whether they are one piece of the mesh.
@@ -162,7 +222,7 @@ void GlScene::draw(std::span<const TriangleRange> ranges) {
       command.first_index = static_cast<GLuint>(index_count_ + 3 * start);
       command.count = static_cast<GLuint>(3 * (compacted_.size() - start));
     }
-    if (command.count > 0) commands_.push_back(command);
+    if (command.count > 0) add_command(command, object);
     begin = end;
   }
   if (!compacted_.empty()) {
@@ -177,11 +237,13 @@ void GlScene::draw(std::span<const TriangleRange> ranges) {
 void GlScene::draw_each_range(std::span<const TriangleRange> ranges) {
   if (ranges.empty()) return;
   commands_.clear();
+  turns_.clear();
   range_instances_.clear();
   for (const TriangleRange& range : ranges) {
     const MeshPlace& place = places_[scene_->objects[range.object].mesh];
-    commands_.push_back({3 * range.count, 1, place.first_index + 3 * range.first, place.base_vertex,
-                         static_cast<GLuint>(range_instances_.size())});
+    add_command({3 * range.count, 1, place.first_index + 3 * range.first, place.base_vertex,
+                 static_cast<GLuint>(range_instances_.size())},
+                range.object);
     range_instances_.push_back({range.object, scene_->first_triangle(range.object) + range.first});
   }
   range_stream_.upload(gl_, buffers_[range_instances], range_instances_.data(),

@@ -41,6 +41,14 @@ class GlScene {
   /// update. O(objects).
   void update_transforms(std::span<const glm::dmat4x3> transforms);
 
+  /// From now on draw and draw_each_range leave out the triangles of these objects that are seen
+  /// from behind, for the transforms of the last update.
+  void cull_back_faces(std::span<const ObjectId> objects);
+  /// Those objects, in the order in which they were first named.
+  std::span<const ObjectId> one_sided() const { return one_sided_; }
+  /// Ends that for all objects. O(objects named since).
+  void draw_both_sides();
+
   /// Makes the buffers current for draw (`each_range` false: id = object) or for draw_each_range
   /// (true: id = id of the range's first triangle).
   void bind(bool each_range);
@@ -68,6 +76,8 @@ class GlScene {
     std::uint32_t object = 0;
     std::uint32_t id = 0;
   };
+  /// Which triangles of an object are drawn: those that turn this way in the window.
+  enum class Turn : std::uint8_t { any, counter_clockwise, clockwise };
   using TransformRows = std::array<glm::vec4, 3>;
   enum BufferName {
     vertices,
@@ -80,7 +90,10 @@ class GlScene {
   };
 
   void reserve_indices(std::size_t compacted);
+  void add_command(const DrawCommand& command, ObjectId object);
+  /// One call of the device for each run of commands that draw triangles of the same turn.
   void draw_commands();
+  void select(Turn turn);
 
   const GlFunctions& gl_;
   std::array<GLuint, buffer_count> buffers_{};
@@ -93,6 +106,9 @@ class GlScene {
 
   std::vector<TransformRows> rows_;
   std::vector<DrawCommand> commands_;
+  std::vector<Turn> turns_;          // of each command
+  std::vector<Turn> turn_of_;        // by object
+  std::vector<ObjectId> one_sided_;  // those whose turn is not any
   std::vector<glm::uvec3> compacted_;
   std::vector<Instance> range_instances_;
   StreamBuffer command_stream_;

@@ -71,6 +71,8 @@ class OsMesaDevice::Implementation {
   void draw(std::span<const ObjectId> objects);
   void draw(std::span<const TriangleRange> ranges);
   void draw_ids(std::span<const TriangleRange> ranges);
+  void cull_back_faces(std::span<const ObjectId> objects);
+  std::span<const ObjectId> one_sided() const { return scene_.one_sided(); }
   QueryId query(std::span<const Aabb> boxes);
   void flush();
   bool ready(QueryId query);
@@ -177,6 +179,7 @@ void OsMesaDevice::Implementation::begin_frame(const Frame& frame) {
     set_camera(gl, program, frame.camera, scene_.scene()->origin());
   }
   scene_.update_transforms(frame.objects.transforms);
+  scene_.draw_both_sides();
 
   gl.DepthMask(GL_TRUE);
   gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
@@ -248,6 +251,11 @@ void OsMesaDevice::Implementation::draw(std::span<const TriangleRange> ranges) {
   select(context_.make_current(), object_program);
   scene_.draw(ranges);
   context_.check("draw");
+}
+
+void OsMesaDevice::Implementation::cull_back_faces(std::span<const ObjectId> objects) {
+  require_frame();
+  scene_.cull_back_faces(objects);
 }
 
 void OsMesaDevice::Implementation::draw_ids(std::span<const TriangleRange> ranges) {
@@ -362,6 +370,10 @@ void OsMesaDevice::draw(std::span<const TriangleRange> ranges) { implementation_
 void OsMesaDevice::draw_ids(std::span<const TriangleRange> ranges) {
   implementation_->draw_ids(ranges);
 }
+void OsMesaDevice::cull_back_faces(std::span<const ObjectId> objects) {
+  implementation_->cull_back_faces(objects);
+}
+std::span<const ObjectId> OsMesaDevice::one_sided() const { return implementation_->one_sided(); }
 QueryId OsMesaDevice::query(std::span<const Aabb> boxes) { return implementation_->query(boxes); }
 void OsMesaDevice::flush() { implementation_->flush(); }
 bool OsMesaDevice::ready(QueryId query) { return implementation_->ready(query); }

@@ -31,6 +31,8 @@ class OsMesaDevice : public RenderDevice {
   void begin_frame(const Frame& frame) override;
   void draw(std::span<const ObjectId> objects) override;
   void draw(std::span<const TriangleRange> ranges) override;
+  void cull_back_faces(std::span<const ObjectId> objects) override;
+  std::span<const ObjectId> one_sided() const override;
   QueryId query(std::span<const Aabb> boxes) override;
   void flush() override;
   bool ready(QueryId query) override;
@@ -38,8 +40,8 @@ class OsMesaDevice : public RenderDevice {
   void finish() override;
   std::string description() const override;
 
-  /// As draw(ranges), but writes the id of each triangle (TriangleId) where draw writes the
-  /// object's. Depths are bit for bit those of draw. One device draw a range.
+  /// As draw(ranges), cull_back_faces included, but writes the id of each triangle (TriangleId)
+  /// where draw writes the object's. Depths are bit for bit those of draw. One device draw a range.
   void draw_ids(std::span<const TriangleRange> ranges);
 
   /// The ids drawn so far in this frame, none_id where nothing is. width * height values, row by

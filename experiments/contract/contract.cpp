@@ -92,6 +92,11 @@ class Subject {
     return all;
   }
 
+  /// Objects whose backs the device left out on the culler's behalf, of the last ask.
+  std::span<const ObjectId> one_sided() const {
+    return device_ == nullptr ? std::span<const ObjectId>{} : device_->one_sided();
+  }
+
   std::uint64_t allocations() const { return allocations_; }
   void forget_allocations() { allocations_ = 0; }
 
@@ -132,14 +137,16 @@ class GuaranteeJudge {
     if (guarantee_ == Guarantee::image_exact) image_.emplace(scenario.scene());
   }
 
-  /// How `kept`, chosen from `offered`, breaks the guarantee; empty if it does not. What was not
-  /// offered counts as kept: the culler cannot be blamed for it.
-  std::string breach(std::size_t index, const VisibleSet& offered, const VisibleSet& kept) {
+  /// How `kept`, chosen from `offered` and drawn without the backs of `one_sided` objects, breaks
+  /// the guarantee; empty if it does not. What was not offered counts as kept: the culler cannot be
+  /// blamed for it.
+  std::string breach(std::size_t index, const VisibleSet& offered, const VisibleSet& kept,
+                     std::span<const ObjectId> one_sided) {
     const Frame frame = scenario_->frame(index);
     const Offer all(OfferKind::everything, scenario_->scene(), frame);
     const VisibleSet drawn = united(kept, without(all.set(), offered));
     if (guarantee_ == Guarantee::conservative) return lost(frame, drawn);
-    if (guarantee_ == Guarantee::image_exact) return changed(frame, drawn);
+    if (guarantee_ == Guarantee::image_exact) return changed(frame, drawn, one_sided);
     return {};
   }
 
@@ -159,12 +166,13 @@ class GuaranteeJudge {
            " jittered samples";
   }
 
-  std::string changed(const Frame& frame, const VisibleSet& drawn) {
+  std::string changed(const Frame& frame, const VisibleSet& drawn,
+                      std::span<const ObjectId> one_sided) {
     if (started_ != frame.index) {
       image_->start(frame, scenario_->truth().frame(frame.index));
       started_ = frame.index;
     }
-    const ImageVerdict verdict = image_->judge(frame, drawn);
+    const ImageVerdict verdict = image_->judge(frame, drawn, one_sided);
     if (verdict.image_px == 0) return {};
     return std::to_string(verdict.image_px) +
            " pixels of the image are not those of the full scene";
@@ -236,7 +244,7 @@ class Walks {
       subject_.go_to(i);
       sets.push_back(asked(subject_, i, batches));
       findings_->report(Findings::guarantee, where(i),
-                        judge_.breach(i, offered(i, batches), sets.back()));
+                        judge_.breach(i, offered(i, batches), sets.back(), subject_.one_sided()));
     }
     subject_.reset();
     for (std::size_t i = 0; i < scenario_->frame_count(); ++i) {

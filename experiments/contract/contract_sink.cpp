@@ -105,6 +105,11 @@ void UncountedDevice::draw(std::span<const TriangleRange> ranges) {
   device_->draw(ranges);
 }
 
+void UncountedDevice::cull_back_faces(std::span<const ObjectId> objects) {
+  const Pause pause;
+  device_->cull_back_faces(objects);
+}
+
 QueryId UncountedDevice::query(std::span<const Aabb> boxes) {
   const Pause pause;
   return device_->query(boxes);

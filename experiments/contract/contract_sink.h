@@ -61,6 +61,8 @@ class UncountedDevice : public RenderDevice {
   void begin_frame(const Frame& frame) override;
   void draw(std::span<const ObjectId> objects) override;
   void draw(std::span<const TriangleRange> ranges) override;
+  void cull_back_faces(std::span<const ObjectId> objects) override;
+  std::span<const ObjectId> one_sided() const override { return device_->one_sided(); }
   QueryId query(std::span<const Aabb> boxes) override;
   void flush() override;
   bool ready(QueryId query) override;

@@ -54,6 +54,35 @@ CellKey key_from_json(const json& j) {
   return key;
 }
 
+/// [{"quantity": "triangle", "value": 160, "unit": "ns", "low": 155, "high": 170}, …]: low and high
+/// are quartiles.
+json costs_to_json(const CostTable& costs) {
+  json list = json::array();
+  for (const CostQuantity& quantity : cost_quantities()) {
+    const Cost& cost = costs.*quantity.cost;
+    list.push_back({{"quantity", quantity.name},
+                    {"value", cost.ns},
+                    {"unit", "ns"},
+                    {"low", cost.low_ns},
+                    {"high", cost.high_ns}});
+  }
+  return list;
+}
+
+/// A quantity that the program did not know then stays at its typical cost.
+CostTable costs_from_json(const json& list) {
+  CostTable costs = CostTable::typical();
+  for (const json& entry : list) {
+    const std::string name = entry.at("quantity");
+    for (const CostQuantity& quantity : cost_quantities()) {
+      if (quantity.name == name) {
+        costs.*quantity.cost = {entry.at("value"), entry.at("low"), entry.at("high")};
+      }
+    }
+  }
+  return costs;
+}
+
 }  // namespace
 
 std::string CellKey::id() const { return hash_text(key_to_json(*this).dump()); }
@@ -72,7 +101,11 @@ std::string to_string(ResultCell::Status status) {
 
 std::string answer_hash(const ResultCell& cell) {
   std::string text;
-  for (const CellFrame& frame : cell.frames) text += frame.set + " " + frame.truth + "\n";
+  for (const CellFrame& frame : cell.frames) {
+    text += frame.set + " " + frame.truth;
+    if (!frame.one_sided.empty()) text += " " + frame.one_sided;
+    text += "\n";
+  }
   return hash_text(text);
 }
 
@@ -82,6 +115,9 @@ std::string to_json(const ResultCell& cell) {
     frames.push_back({{"set", frame.set},
                       {"truth", frame.truth},
                       {"submitted_triangles", frame.submitted_triangles},
+                      {"draws", frame.draws},
+                      {"pieces", frame.pieces},
+                      {"one_sided", frame.one_sided},
                       {"counters", frame.counters}});
   }
   json rounds = json::array();
@@ -101,31 +137,32 @@ std::string to_json(const ResultCell& cell) {
           {{"session", round.session}, {"number", round.number}, {"frame_ms", round.frame_ms}});
     }
   }
-  const json j = {{"format", format_version},
-                  {"id", cell.key.id()},
-                  {"key", key_to_json(cell.key)},
-                  {"culler", cell.culler},
-                  {"scene", cell.scene},
-                  {"path", cell.path},
-                  {"scene_description", cell.scene_description},
-                  {"scene_source", cell.scene_source},
-                  {"path_source", cell.path_source},
-                  {"scene_objects", cell.scene_objects},
-                  {"scene_triangles", cell.scene_triangles},
-                  {"moving_objects", cell.moving_objects},
-                  {"status", to_string(cell.status)},
-                  {"reason", cell.reason},
-                  {"guarantee", to_string(cell.guarantee)},
-                  {"repeatability", to_string(cell.repeatability)},
-                  {"granularity", to_string(cell.granularity)},
-                  {"culls", to_string(cell.culls)},
-                  {"asks_device", cell.asks_device},
-                  {"build_ms", cell.build_ms},
-                  {"bytes", cell.bytes},
-                  {"frames", frames},
-                  {"rounds", rounds},
-                  {"anchors", anchors},
-                  {"context", cell.context}};
+  json j = {{"format", format_version},
+            {"id", cell.key.id()},
+            {"key", key_to_json(cell.key)},
+            {"culler", cell.culler},
+            {"scene", cell.scene},
+            {"path", cell.path},
+            {"scene_description", cell.scene_description},
+            {"scene_source", cell.scene_source},
+            {"path_source", cell.path_source},
+            {"scene_objects", cell.scene_objects},
+            {"scene_triangles", cell.scene_triangles},
+            {"moving_objects", cell.moving_objects},
+            {"status", to_string(cell.status)},
+            {"reason", cell.reason},
+            {"guarantee", to_string(cell.guarantee)},
+            {"repeatability", to_string(cell.repeatability)},
+            {"granularity", to_string(cell.granularity)},
+            {"culls", to_string(cell.culls)},
+            {"asks_device", cell.asks_device},
+            {"build_ms", cell.build_ms},
+            {"bytes", cell.bytes},
+            {"frames", frames},
+            {"rounds", rounds},
+            {"anchors", anchors},
+            {"context", cell.context}};
+  if (cell.costs) j["costs"] = costs_to_json(*cell.costs);
   // Names of files need not be UTF-8: what is not is replaced.
   return j.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
 }
@@ -159,8 +196,11 @@ std::optional<ResultCell> parse_cell(const std::string& text, const std::string&
     cell.build_ms = j.at("build_ms");
     cell.bytes = j.at("bytes");
     for (const json& frame : j.at("frames")) {
+      // Draws, pieces and one_sided were not counted before there were costs of them.
       cell.frames.push_back({frame.at("set"), frame.at("truth"), frame.at("submitted_triangles"),
-                             frame.at("counters")});
+                             frame.value("draws", std::uint64_t{0}),
+                             frame.value("pieces", std::uint64_t{0}),
+                             frame.value("one_sided", std::string()), frame.at("counters")});
     }
     for (const json& r : j.at("rounds")) {
       cell.rounds.push_back({r.at("session"), r.at("number"), r.at("update_us"), r.at("cull_us"),
@@ -181,6 +221,7 @@ std::optional<ResultCell> parse_cell(const std::string& text, const std::string&
       }
     }
     cell.context = j.at("context").get<std::map<std::string, std::string>>();
+    if (j.contains("costs")) cell.costs = costs_from_json(j.at("costs"));
     return cell;
   });
 }

@@ -47,6 +47,9 @@ struct CellFrame {
   std::string set;    // VisibleSet::hash
   std::string truth;  // truth_key
   std::uint64_t submitted_triangles = 0;
+  std::uint64_t draws = 0;   // runs of emitted ranges of one object
+  std::uint64_t pieces = 0;  // contiguous ranges that these are made of
+  std::string one_sided;     // hash of the set of triangles whose backs the device left out; or ""
   std::map<std::string, std::uint64_t> counters;
 };
 
@@ -77,6 +80,8 @@ struct ResultCell {
   std::vector<Round> rounds;
   std::map<std::string, std::vector<AnchorRound>> anchors;  // by the anchor's canonical chain
   std::map<std::string, std::string> context;               // machine, compiler, revision, …
+  /// What drawing and testing cost when it was measured; none in results from before it was.
+  std::optional<CostTable> costs;
 };
 
 std::string to_string(ResultCell::Status status);

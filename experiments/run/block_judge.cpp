@@ -15,6 +15,20 @@ void add(CulledOf& sum, const CulledOf& frame) {
   sum.culled += frame.culled;
 }
 
+/// The objects of a stored set of whole objects; none for "".
+std::vector<ObjectId> objects_of(const std::string& hash, const Scene& scene,
+                                 const ResultStore& store) {
+  std::vector<ObjectId> objects;
+  if (hash.empty()) return objects;
+  for (const VisibleSet::Run& run : store.load_set(hash).runs()) {
+    for (TriangleId triangle = run.first; triangle < run.first + run.count;) {
+      objects.push_back(scene.object_of(triangle));
+      triangle += scene.triangle_count(objects.back());
+    }
+  }
+  return objects;
+}
+
 }  // namespace
 
 void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene, const Path& path,
@@ -52,7 +66,7 @@ void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene
     const CullableTriangles cullable(frame, scene);
     std::map<std::string, VisibleSet> sets;
     std::map<std::pair<std::string, Granularity>, Verdict> verdicts;
-    std::map<std::string, ImageVerdict> images;
+    std::map<std::string, ImageVerdict> images;  // by the sets that were drawn, and one-sided
     for (Pending& entry : pending) {
       const std::string& hash = entry.cell->frames[index].set;
       const Granularity granularity = entry.cell->granularity;
@@ -67,8 +81,12 @@ void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene
       add(entry.verdicts.outside, cullable.outside(set));
       entry.stability.add(visibility, set);
       if (image) {
-        if (!images.contains(hash)) images.emplace(hash, image->judge(frame, set));
-        entry.verdicts.images.push_back(images.at(hash));
+        const std::string& one_sided = entry.cell->frames[index].one_sided;
+        const std::string drawn_as = hash + " " + one_sided;
+        if (!images.contains(drawn_as)) {
+          images.emplace(drawn_as, image->judge(frame, set, objects_of(one_sided, scene, store)));
+        }
+        entry.verdicts.images.push_back(images.at(drawn_as));
       }
       entry.verdicts.floor_disputed_px += floor.disputed_px;
       entry.verdicts.floor_undisputed_px += floor.undisputed_px;

@@ -335,12 +335,16 @@ class BlockRun {
       run.frames[i].truth = truth_keys_[i];
       if (!cell.frames.empty() && cell.repeatability != Repeatability::timing &&
           (cell.frames[i].set != run.frames[i].set ||
+           cell.frames[i].one_sided != run.frames[i].one_sided ||
            cell.frames[i].counters != run.frames[i].counters)) {
         throw std::runtime_error("not repeatable as it declares (" +
                                  std::string(to_string(cell.repeatability)) + "): frame " +
                                  std::to_string(i) + " differs from an earlier round");
       }
       store_.save_set(run.frames[i].set, run.sets[i]);
+      if (!run.frames[i].one_sided.empty()) {
+        store_.save_set(run.frames[i].one_sided, run.one_sided[i]);
+      }
     }
     if (cell.frames.empty()) cell.frames = std::move(run.frames);
   }

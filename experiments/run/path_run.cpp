@@ -3,6 +3,30 @@
 #include <chrono>
 
 namespace vislab {
+namespace {
+
+/// As a device draws them: ranges of one object that follow each other are one draw.
+void count_draws(const std::vector<TriangleRange>& emitted, CellFrame& answer) {
+  ObjectId object = none_id;
+  std::uint32_t next = 0;
+  for (const TriangleRange& range : emitted) {
+    if (range.count == 0) continue;
+    answer.draws += range.object != object ? 1 : 0;
+    answer.pieces += range.object != object || range.first != next ? 1 : 0;
+    object = range.object;
+    next = range.first + range.count;
+  }
+}
+
+VisibleSet triangles_of(std::span<const ObjectId> objects, const Scene& scene) {
+  std::vector<VisibleSet::Run> runs;
+  for (const ObjectId object : objects) {
+    runs.push_back({scene.first_triangle(object), scene.triangle_count(object)});
+  }
+  return VisibleSet(std::move(runs));
+}
+
+}  // namespace
 
 PathRun run_path(ICuller& culler, const Scene& scene, const Path& path, const Viewport& viewport,
                  std::uint64_t seed, SceneState& state, TimedDevice* device) {
@@ -43,6 +67,12 @@ PathRun run_path(ICuller& culler, const Scene& scene, const Path& path, const Vi
     CellFrame answer;
     answer.set = set.hash();
     answer.submitted_triangles = set.triangle_count();
+    count_draws(sink.recording().emitted(), answer);
+    VisibleSet one_sided;
+    if (device != nullptr && !device->one_sided().empty()) {
+      one_sided = triangles_of(device->one_sided(), scene);
+      answer.one_sided = one_sided.hash();
+    }
     Counters after = culler.counters();
     for (std::size_t k = 0; k < after.size(); ++k) {
       const std::uint64_t old = k < before.size() ? before[k].second : 0;
@@ -51,6 +81,7 @@ PathRun run_path(ICuller& culler, const Scene& scene, const Path& path, const Vi
     before = std::move(after);
     run.frames.push_back(std::move(answer));
     run.sets.push_back(std::move(set));
+    run.one_sided.push_back(std::move(one_sided));
   });
   return run;
 }

@@ -31,9 +31,10 @@ void for_each_frame(const Path& path, SceneState& state, const Viewport& viewpor
 
 /// What a pass over a path gives.
 struct PathRun {
-  Round round;                    // session and number left empty
-  std::vector<VisibleSet> sets;   // by frame
-  std::vector<CellFrame> frames;  // hash, size and counters; truth left empty
+  Round round;                        // session and number left empty
+  std::vector<VisibleSet> sets;       // by frame
+  std::vector<VisibleSet> one_sided;  // by frame: triangles of objects drawn one-sided
+  std::vector<CellFrame> frames;      // hashes, sizes and counters; truth left empty
 };
 
 /// Resets the culler and runs it over the path. `device` may be null: nothing is drawn.

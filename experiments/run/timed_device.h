@@ -40,6 +40,10 @@ class TimedDevice : public RenderDevice {
   void draw(std::span<const TriangleRange> ranges) override {
     timed([&] { device_->draw(ranges); });
   }
+  void cull_back_faces(std::span<const ObjectId> objects) override {
+    timed([&] { device_->cull_back_faces(objects); });
+  }
+  std::span<const ObjectId> one_sided() const override { return device_->one_sided(); }
   QueryId query(std::span<const Aabb> boxes) override {
     return timed([&] { return device_->query(boxes); });
   }

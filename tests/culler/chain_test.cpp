@@ -303,6 +303,8 @@ class ListeningDevice : public RenderDevice {
   void draw(std::span<const TriangleRange> ranges) override {
     for (const TriangleRange& range : ranges) drawn_ += range.count;
   }
+  void cull_back_faces(std::span<const ObjectId>) override {}
+  std::span<const ObjectId> one_sided() const override { return {}; }
   QueryId query(std::span<const Aabb>) override {
     drawn_before_query_.push_back(drawn_);
     return static_cast<QueryId>(drawn_before_query_.size() - 1);
