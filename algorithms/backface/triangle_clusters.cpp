@@ -18,6 +18,7 @@ constexpr std::size_t feature_count = 4;
 struct Item {
   std::array<std::int16_t, feature_count> features;
   std::uint32_t triangle;
+  std::uint32_t plane;
 };
 
 std::int16_t feature(double value) {
@@ -26,30 +27,99 @@ std::int16_t feature(double value) {
 
 class Builder {
  public:
-  Builder(std::uint32_t size, TriangleClusters& clusters) : size_(size), clusters_(clusters) {}
-
-  std::vector<Item> items;
+  Builder(const Mesh& mesh, const MeshFrame& frame, const ClusterSettings& settings,
+          TriangleClusters& clusters)
+      : mesh_(mesh), frame_(frame), settings_(settings), clusters_(clusters) {
+    const double offset_scale = frame.size > 0.0 ? 1.0 / (settings.eye_distance * frame.size) : 0.0;
+    items_.reserve(mesh.triangles.size());
+    planes_.reserve(mesh.triangles.size());
+    for (std::uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
+      const glm::dvec4 plane = unit_plane(mesh, frame, triangle);
+      if (plane == glm::dvec4(0.0)) {
+        apart_.push_back(triangle);
+      } else {
+        items_.push_back({{feature(plane.x), feature(plane.y), feature(plane.z),
+                           feature(plane.w * offset_scale)},
+                          triangle,
+                          static_cast<std::uint32_t>(planes_.size())});
+        planes_.push_back(plane);
+      }
+    }
+    const auto count = static_cast<std::uint32_t>(items_.size());
+    size_ = std::clamp(count / least_clusters, 1U, settings.size);
+    const auto reach = static_cast<float>(settings.eye_distance * frame.size);
+    eyes_.extend(glm::vec3(-reach));
+    eyes_.extend(glm::vec3(reach));
+    eyes_volume_ = 8.0 * double(reach) * double(reach) * double(reach);
+  }
 
   void build() {
-    if (items.empty()) return;
-    rest_.resize(items.size());
-    build(0, static_cast<std::uint32_t>(items.size()));
+    const auto count = static_cast<std::uint32_t>(items_.size());
+    rest_.resize(count);
+    clusters_.order.reserve(mesh_.triangles.size());
+    if (count > 0) build(0, count);
+    clusters_.tested = static_cast<std::uint32_t>(clusters_.first.size());
+    clusters_.first.push_back(count);
+    // Joined clusters are ascending in their halves only.
+    for (std::uint32_t cluster = 0; cluster < clusters_.tested; ++cluster) {
+      const auto begin = clusters_.order.begin() + clusters_.first[cluster];
+      const auto end = clusters_.order.begin() + clusters_.first[cluster + 1];
+      if (!std::is_sorted(begin, end)) std::sort(begin, end);
+    }
+    if (apart_.empty()) return;
+    clusters_.order.insert(clusters_.order.end(), apart_.begin(), apart_.end());
+    clusters_.first.push_back(static_cast<std::uint32_t>(clusters_.order.size()));
   }
 
  private:
-  std::uint32_t build(std::uint32_t first, std::uint32_t end) {
+  /// What the cost model needs of a subtree that is one cluster.
+  struct Made {
+    bool one_cluster = false;
+    ClusterOdds odds;
+    Aabb box;
+  };
+
+  Made build(std::uint32_t first, std::uint32_t end) {
     const auto index = static_cast<std::uint32_t>(clusters_.nodes.size());
     clusters_.nodes.push_back({first, end, 0, 0});
-    if (end - first > size_) {
-      const std::uint32_t middle = split(first, end);
-      const std::uint32_t left = build(first, middle);
-      const std::uint32_t right = build(middle, end);
-      clusters_.nodes[index].left = left;
-      clusters_.nodes[index].right = right;
-    } else {
+    Made made;
+    if (end - first <= size_) {
       clusters_.first.push_back(first);
+      for (std::uint32_t i = first; i < end; ++i) {
+        clusters_.order.push_back(items_[i].triangle);
+        ordered_planes_.push_back(planes_[items_[i].plane]);
+      }
+      made.one_cluster = true;
+      made.box = box_of(mesh_, frame_, std::span(clusters_.order).subspan(first));
+      made.odds = odds_of(first, end, made.box);
+      return made;
     }
-    return index;
+    const std::uint32_t middle = split(first, end);
+    const std::uint32_t left = static_cast<std::uint32_t>(clusters_.nodes.size());
+    const Made left_made = build(first, middle);
+    const std::uint32_t right = static_cast<std::uint32_t>(clusters_.nodes.size());
+    const Made right_made = build(middle, end);
+    clusters_.nodes[index].left = left;
+    clusters_.nodes[index].right = right;
+    if (!left_made.one_cluster || !right_made.one_cluster) return made;
+    made.box = left_made.box;
+    made.box.extend(right_made.box);
+    made.odds = odds_of(first, end, made.box);
+    made.one_cluster = should_join(left_made.odds, right_made.odds, made.odds.probability,
+                                   settings_.test_cost, settings_.join);
+    if (made.one_cluster) {
+      clusters_.nodes.resize(index + 1);
+      clusters_.nodes[index].left = clusters_.nodes[index].right = 0;
+      clusters_.first.pop_back();
+    }
+    return made;
+  }
+
+  ClusterOdds odds_of(std::uint32_t first, std::uint32_t end, const Aabb& box) const {
+    const std::span<const glm::dvec4> planes =
+        std::span(ordered_planes_).subspan(first, end - first);
+    const ClusterBound bound = bound_of(planes, box, frame_, settings_.origin);
+    return {culling_volume(bound, eyes_) / eyes_volume_, static_cast<double>(end - first)};
   }
 
   /// How many of `count` triangles go to the left: so many that clusters are full, and the nodes
@@ -64,7 +134,7 @@ class Builder {
 
   /// Splits across the feature that extends farthest; ascending order is kept on both sides.
   std::uint32_t split(std::uint32_t first, std::uint32_t end) {
-    const std::span<Item> all = std::span(items).subspan(first, end - first);
+    const std::span<Item> all = std::span(items_).subspan(first, end - first);
     std::array<int, feature_count> low, high;
     low.fill(std::numeric_limits<int>::max());
     high.fill(std::numeric_limits<int>::min());
@@ -107,9 +177,16 @@ class Builder {
     return first + wanted;
   }
 
-  std::uint32_t size_;
+  const Mesh& mesh_;
+  const MeshFrame& frame_;
+  const ClusterSettings& settings_;
   TriangleClusters& clusters_;
-  std::vector<Item> rest_;
+  std::uint32_t size_ = 1;
+  Aabb eyes_;  // where eyes may be
+  double eyes_volume_ = 1.0;
+  std::vector<Item> items_, rest_;
+  std::vector<std::uint32_t> apart_;
+  std::vector<glm::dvec4> planes_, ordered_planes_;
 };
 
 }  // namespace
@@ -124,28 +201,30 @@ glm::dvec4 unit_plane(const Mesh& mesh, const MeshFrame& frame, std::uint32_t tr
 TriangleClusters make_clusters(const Mesh& mesh, const MeshFrame& frame,
                                const ClusterSettings& settings) {
   TriangleClusters clusters;
-  Builder builder(settings.size, clusters);
-  builder.items.reserve(mesh.triangles.size());
-  std::vector<std::uint32_t> apart;
-  const double offset_scale = frame.size > 0.0 ? 1.0 / (settings.eye_distance * frame.size) : 0.0;
-  for (std::uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
-    const glm::dvec4 plane = unit_plane(mesh, frame, triangle);
-    if (plane == glm::dvec4(0.0)) {
-      apart.push_back(triangle);
-    } else {
-      builder.items.push_back(
-          {{feature(plane.x), feature(plane.y), feature(plane.z), feature(plane.w * offset_scale)},
-           triangle});
+  Builder(mesh, frame, settings, clusters).build();
+  return clusters;
+}
+
+std::vector<glm::dvec4> planes_in_order(const Mesh& mesh, const MeshFrame& frame,
+                                        const TriangleClusters& clusters) {
+  std::vector<glm::dvec4> planes;
+  planes.reserve(clusters.first[clusters.tested]);
+  for (std::uint32_t i = 0; i < clusters.first[clusters.tested]; ++i) {
+    planes.push_back(unit_plane(mesh, frame, clusters.order[i]));
+  }
+  return planes;
+}
+
+Aabb box_of(const Mesh& mesh, const MeshFrame& frame, std::span<const std::uint32_t> triangles) {
+  Aabb box;
+  for (const std::uint32_t triangle : triangles) {
+    for (int corner = 0; corner < 3; ++corner) {
+      box.extend(mesh.positions[mesh.triangles[triangle][corner]]);
     }
   }
-  builder.build();
-  clusters.order.reserve(mesh.triangles.size());
-  for (const Item& item : builder.items) clusters.order.push_back(item.triangle);
-  clusters.tested = static_cast<std::uint32_t>(clusters.first.size());
-  if (!apart.empty()) clusters.first.push_back(static_cast<std::uint32_t>(clusters.order.size()));
-  clusters.order.insert(clusters.order.end(), apart.begin(), apart.end());
-  clusters.first.push_back(static_cast<std::uint32_t>(clusters.order.size()));
-  return clusters;
+  box.min = glm::vec3(glm::dvec3(box.min) - frame.middle);
+  box.max = glm::vec3(glm::dvec3(box.max) - frame.middle);
+  return box;
 }
 
 void append_runs(std::span<const std::uint32_t> triangles, std::vector<TriangleRun>& runs) {

@@ -3,25 +3,40 @@
 // Idea: whether a triangle is seen from behind depends on its plane alone, so triangles belong
 //   together if their planes are near each other as seen from where eyes usually are, connected or
 //   not: slopes of several bumps that lie parallel cull better together than the two slopes of one
-//   bump. Planes are points (normal, offset / distance of the eye) here, and are split top-down.
-// Cost: O(n log n); see ./lab bench backface for triangles a second.
-// Limits: triangles without area, or nearly, have no plane to tell by, and are set apart.
+//   bump. Planes are points (normal, offset / distance of the eye) here, which are split top-down
+//   across their farthest extent until clusters are small; then the cost model of the slides joins
+//   neighbours where a test costs more than it spares.
+// Cost: O(n log n), and O(n) a level for clusters that are joined; ./lab bench backface tells
+//   triangles a second.
+// Limits: triangles without area, or nearly, have no plane to tell by, and are set apart. Runs of
+//   triangles that follow each other in the mesh become short where the surface is rough.
+// Sources: Zachmann slides 27-29 for the cost model. The slides take a share of the cluster's own
+//   box as the possible places of the eye; clusters here may lie all over the mesh, so it is a box
+//   around the mesh.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "algorithms/backface/mesh_eye.h"
+#include "algorithms/backface/culling_volume.h"
 
 namespace vislab::backface_culling {
 
 struct ClusterSettings {
-  std::uint32_t size = 32;  // triangles in a cluster; at least 1
+  /// Triangles in a cluster before any are joined, at least 1. Small meshes get smaller ones: so
+  /// many that there are least_clusters.
+  std::uint32_t size = 8;
   /// Where eyes usually are: the distance from the middle of the mesh, as a multiple of its size
-  /// (MeshFrame::size). Small: clusters are tight in space; large: in their normals.
+  /// (MeshFrame::size), at least 2. What is near and what is probable is measured with it.
   double eye_distance = 3.0;
+  /// t_C / r: the time to test a cluster in that of drawing a triangle. 0: nothing is joined
+  /// unless it culls as well.
+  double test_cost = 0.0;
+  JoinRule join = JoinRule::derived;
+  Origin origin = Origin::centre;  // of the bounds by which it is judged what joins
 };
+inline constexpr std::uint32_t least_clusters = 64;
 
 /// A partition of a mesh's triangles, and the tree of splits that made it.
 struct TriangleClusters {
@@ -51,9 +66,16 @@ struct TriangleClusters {
 glm::dvec4 unit_plane(const Mesh& mesh, const MeshFrame& frame, std::uint32_t triangle);
 inline constexpr double plane_error = 4e-9;
 
-/// Makes clusters of `size` triangles, the last few smaller. Deterministic.
+/// Deterministic.
 TriangleClusters make_clusters(const Mesh& mesh, const MeshFrame& frame,
                                const ClusterSettings& settings);
+
+/// Unit planes of the triangles of the clusters below `tested`, in the order of `order`.
+std::vector<glm::dvec4> planes_in_order(const Mesh& mesh, const MeshFrame& frame,
+                                        const TriangleClusters& clusters);
+
+/// Box around triangles, relative to the mesh's middle, rounded to float.
+Aabb box_of(const Mesh& mesh, const MeshFrame& frame, std::span<const std::uint32_t> triangles);
 
 /// Consecutive triangles of a mesh.
 struct TriangleRun {

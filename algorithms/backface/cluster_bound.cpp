@@ -1,0 +1,122 @@
+#include "algorithms/backface/cluster_bound.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "algorithms/backface/triangle_clusters.h"
+#include "common/geometry/rounding.h"
+
+namespace vislab::backface_culling {
+namespace {
+
+constexpr double float_epsilon = std::numeric_limits<float>::epsilon();
+
+/// Bound on the error of n.p + d, where p is at most as far from the mesh's middle as `reach` along
+/// each axis: of the plane, and of the three products and sums in double.
+double value_error(const MeshFrame& frame, double reach) {
+  return 1.01 * plane_error * (frame.size + 3.0 * reach);
+}
+
+double largest(const glm::dvec3& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+/// Least n_i.(p_i - c).
+double least_offset(std::span<const glm::dvec4> planes, const glm::dvec3& c) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const glm::dvec4& plane : planes) {
+    least = std::min(least, -(glm::dot(glm::dvec3(plane), c) + plane.w));
+  }
+  return least;
+}
+
+glm::vec3 best_origin(std::span<const glm::dvec4> planes, const Aabb& box) {
+  glm::vec3 best(box.center());
+  double greatest = least_offset(planes, glm::dvec3(best));
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    const glm::vec3 c((corner & 1U) != 0 ? box.max.x : box.min.x,
+                      (corner & 2U) != 0 ? box.max.y : box.min.y,
+                      (corner & 4U) != 0 ? box.max.z : box.min.z);
+    const double offset = least_offset(planes, glm::dvec3(c));
+    if (offset > greatest) {
+      greatest = offset;
+      best = c;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+ClusterBound bound_of(std::span<const glm::dvec4> planes, const Aabb& box, const MeshFrame& frame,
+                      Origin origin) {
+  ClusterBound bound;
+  if (planes.empty()) return bound;
+  switch (origin) {
+    case Origin::mesh:
+      bound.origin = glm::vec3(-frame.middle);
+      break;
+    case Origin::centre:
+      bound.origin = glm::vec3(box.center());
+      break;
+    case Origin::best:
+      bound.origin = best_origin(planes, box);
+      break;
+  }
+  const glm::dvec3 c(bound.origin);
+  glm::dvec3 low(std::numeric_limits<double>::infinity());
+  glm::dvec3 high = -low;
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = -least;
+  for (const glm::dvec4& plane : planes) {
+    const glm::dvec3 normal(plane);
+    low = glm::min(low, normal);
+    high = glm::max(high, normal);
+    const double offset = -(glm::dot(normal, c) + plane.w);
+    least = std::min(least, offset);
+    greatest = std::max(greatest, offset);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    bound.low[axis] = round_down(low[axis] - plane_error);
+    bound.high[axis] = round_up(high[axis] + plane_error);
+  }
+  const double error = value_error(frame, largest(c));
+  bound.back = round_down(least - error);
+  bound.front = round_up(greatest + error);
+  return bound;
+}
+
+ClusterEye cluster_eye(const MeshEye& eye, const MeshFrame& frame, double reach) {
+  ClusterEye result;
+  result.position = glm::vec3(eye.position);
+  result.perspective = eye.position.w != 0.0;
+  // With X = |eye| + |c|: e - c is off by at most an epsilon times X and the eye's own error, along
+  // each of three axes, of which a unit normal sees 1.74; three products, three sums and d take at
+  // most 5.5 X + |d| half epsilons more, and |d| is below 2 (size + |c|).
+  const double distance = eye.magnitude() + eye.position.w * (reach + frame.size);
+  result.limit =
+      static_cast<float>((12.0 * float_epsilon * distance + 2.0 * eye.error) * (1.0 + 1e-6));
+  return result;
+}
+
+Facing facing_of(const ClusterBound& bound, const ClusterEye& eye) {
+  const glm::vec3 way = eye.perspective ? eye.position - bound.origin : eye.position;
+  const glm::vec3 most(way.x > 0.0F ? bound.high.x : bound.low.x,
+                       way.y > 0.0F ? bound.high.y : bound.low.y,
+                       way.z > 0.0F ? bound.high.z : bound.low.z);
+  const glm::vec3 least(way.x > 0.0F ? bound.low.x : bound.high.x,
+                        way.y > 0.0F ? bound.low.y : bound.high.y,
+                        way.z > 0.0F ? bound.low.z : bound.high.z);
+  float most_value = (most.x * way.x + most.y * way.y) + most.z * way.z;
+  float least_value = (least.x * way.x + least.y * way.y) + least.z * way.z;
+  if (eye.perspective) {
+    most_value -= bound.back;
+    least_value -= bound.front;
+  }
+  if (most_value < -eye.limit) return Facing::back;
+  if (least_value > eye.limit) return Facing::front;
+  return Facing::mixed;
+}
+
+}  // namespace vislab::backface_culling
