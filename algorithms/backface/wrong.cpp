@@ -1,0 +1,208 @@
+// backface.wrong: the mistakes that sources and engines made with back faces, as negative controls.
+//
+// Idea: each variant makes one documented mistake and does everything else right, so that its
+//   damage can be measured, and so that the judge is seen to find it.
+// Guarantee: none (erroneous). The table below says of each what its source says or does, what is
+//   wrong with it, and what comes of it.
+// Cost: O(candidate triangles), as the method that is got wrong.
+// Limits: that is what they are for.
+// Sources: in the table.
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "algorithms/backface/facing_culler.h"
+#include "algorithms/backface/plane_kernel.h"
+#include "common/culler/registry.h"
+
+namespace vislab {
+namespace {
+
+using namespace backface_culling;
+
+using Make = std::unique_ptr<ICuller> (*)(CullerInfo info, bool cull_open);
+
+struct Mistake {
+  const char* name;
+  const char* says;    // what the source says or does
+  const char* wrong;   // what is wrong with it
+  const char* damage;  // what it does
+  const char* source;
+  Make make;
+};
+
+/// Planes as backface.polygon has them, with another idea of where the eye is.
+class WrongEye : public FacingCuller {
+ public:
+  /// Nothing: the object is kept whole.
+  using FindEye = std::optional<PlaneTest> (*)(const ObjectView& view, const MeshFrame& frame,
+                                               const PlaneArrays& planes);
+
+  WrongEye(CullerInfo info, bool cull_open, FindEye find)
+      : FacingCuller(std::move(info), cull_open), find_(find) {}
+
+ protected:
+  void clear() override {
+    place_.clear();
+    planes_.clear();
+  }
+  void add_mesh(MeshId id, const Mesh& mesh, const MeshFrame& frame, const BuildContext&) override {
+    place_.resize(id + 1);
+    place_[id] = planes_.size();
+    planes_.emplace_back(mesh, frame);
+  }
+  void mark_range(const ObjectView& view, std::uint32_t first, std::uint32_t count,
+                  std::uint64_t* back) override {
+    const PlaneArrays& planes = planes_[place_[view.mesh]];
+    const std::optional<PlaneTest> test = find_(view, frame_of(view.mesh), planes);
+    if (test) {
+      mark_behind(planes, *test, first, count, back);
+    } else {
+      std::fill_n(back, words_of(count), 0);
+    }
+  }
+  std::size_t mesh_bytes() const override {
+    std::size_t sum = place_.capacity() * sizeof(std::size_t);
+    for (const PlaneArrays& planes : planes_) sum += sizeof(PlaneArrays) + planes.bytes();
+    return sum;
+  }
+
+ private:
+  FindEye find_;
+  std::vector<std::size_t> place_;  // by mesh, in planes_
+  std::vector<PlaneArrays> planes_;
+};
+
+std::unique_ptr<ICuller> view_direction(CullerInfo info, bool cull_open) {
+  return std::make_unique<WrongEye>(
+      std::move(info), cull_open,
+      [](const ObjectView& view, const MeshFrame& frame,
+         const PlaneArrays& planes) -> std::optional<PlaneTest> {
+        Camera camera = view.frame.camera;
+        camera.lens.projection = Projection::orthographic;
+        const auto eye = eye_in_mesh(camera, view.frame.objects.transforms[view.object], frame);
+        if (!eye) return std::nullopt;
+        return plane_test(*eye, frame, planes);
+      });
+}
+
+std::unique_ptr<ICuller> winding_ignored(CullerInfo info, bool cull_open) {
+  return std::make_unique<WrongEye>(std::move(info), cull_open,
+                                    [](const ObjectView& view, const MeshFrame& frame,
+                                       const PlaneArrays& planes) -> std::optional<PlaneTest> {
+                                      PlaneTest test = plane_test(view.eye, frame, planes);
+                                      const glm::dmat4x3& transform =
+                                          view.frame.objects.transforms[view.object];
+                                      // The normal of the transformed vertices is the right one
+                                      // times the determinant.
+                                      if (glm::determinant(glm::dmat3(transform)) < 0.0) {
+                                        test = {-test.x, -test.y, -test.z, -test.w, test.limit};
+                                      }
+                                      return test;
+                                    });
+}
+
+/// Normals taken to the world by the object's matrix itself.
+class NormalsAsVectors : public FacingCuller {
+ public:
+  using FacingCuller::FacingCuller;
+
+ protected:
+  void clear() override {}
+  void add_mesh(MeshId, const Mesh&, const MeshFrame&, const BuildContext&) override {}
+  void mark_range(const ObjectView& view, std::uint32_t first, std::uint32_t count,
+                  std::uint64_t* back) override {
+    const Mesh& mesh = scene().meshes[view.mesh];
+    const MeshFrame& frame = frame_of(view.mesh);
+    const glm::dmat3 linear(view.frame.objects.transforms[view.object]);
+    std::fill_n(back, words_of(count), 0);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const glm::dvec3 normal(scaled_plane(mesh, frame, first + i));
+      const glm::dvec3 vertex =
+          glm::dvec3(mesh.positions[mesh.triangles[first + i].x]) - frame.middle;
+      const glm::dvec3 to_eye = glm::dvec3(view.eye.position) - view.eye.position.w * vertex;
+      const bool behind = glm::dot(linear * normal, linear * to_eye) < 0.0;
+      back[i / 64] |= std::uint64_t{behind} << (i % 64);
+    }
+  }
+  std::size_t mesh_bytes() const override { return 0; }
+};
+
+constexpr std::array mistakes{
+    Mistake{"view_direction",
+            "The sign of the normal times the view direction tells whether a polygon faces the "
+            "camera",
+            "in perspective the direction to a polygon differs from the view's by up to half the "
+            "field of view and more",
+            "leaves out front faces at the sides of the image, and keeps as many back faces",
+            "Kowalka 2016, 2.2.2, against Zachmann slide 8", view_direction},
+    Mistake{"winding_ignored", "The normal is the cross product of the transformed vertices' edges",
+            "a transform that mirrors turns the order of the vertices round",
+            "leaves out the front of every mirrored object and keeps its back",
+            "filament issue 1520; bevy pull request 8859; flutter_scene pull request 137",
+            winding_ignored},
+    Mistake{"normals_as_vectors", "Normals are taken to the world by the object's matrix",
+            "normals go by the inverse transpose, which is another matrix where the object is "
+            "sheared or scaled by different amounts",
+            "leaves out front faces of sheared and flattened objects",
+            "failures of engines with sheared transforms: filament issue 1520",
+            [](CullerInfo info, bool cull_open) -> std::unique_ptr<ICuller> {
+              return std::make_unique<NormalsAsVectors>(std::move(info), cull_open);
+            }},
+};
+
+CullerInfo describe() {
+  CullerInfo info;
+  info.name = "backface.wrong";
+  info.family = "backface";
+  info.summary =
+      "A negative control: a test for back faces that makes one of the mistakes found in the "
+      "sources and in engines.";
+  info.guarantee = Guarantee::erroneous;
+  info.repeatability = Repeatability::stateless;
+  info.granularity = Granularity::triangle;
+  info.culls = Culls::back_faces;
+  info.space = Space::object;
+  info.stage = PipelineStage::geometry;
+  std::vector<std::string> names;
+  std::string meaning = "the mistake:";
+  for (const Mistake& mistake : mistakes) {
+    names.emplace_back(mistake.name);
+    meaning += std::string(names.size() > 1 ? "; " : " ") + mistake.name + " " + mistake.damage;
+  }
+  info.parameters = {
+      ParameterSpec::choice("error", names.front(), names, ParameterSpec::Stage::build, meaning),
+      open_parameter()};
+  info.cost = "O(candidate triangles)";
+  info.limits = "Wrong on purpose: leaves out triangles that are seen from the front.";
+  info.sources = {"Kowalka 2016 (thesis, HAW Hamburg)", "Zachmann, Computer-Graphik 2, SS 2012",
+                  "issues of engines, named with each mistake"};
+  return info;
+}
+
+CullerInfo describe(const Mistake& mistake) {
+  CullerInfo info = describe();
+  info.summary = std::string(mistake.says) + ". Wrong: " + mistake.wrong + ".";
+  info.limits = std::string("Wrong on purpose: ") + mistake.damage + ".";
+  info.sources = {mistake.source};
+  return info;
+}
+
+}  // namespace
+
+namespace cullers {
+
+CullerEntry backface_wrong() {
+  return {describe(), [](const ParameterValues& values) -> std::unique_ptr<ICuller> {
+            for (const Mistake& mistake : mistakes) {
+              if (values.choice("error") == mistake.name) {
+                return mistake.make(describe(mistake), culls_open(values));
+              }
+            }
+            throw std::logic_error("an allowed mistake is not in the table");
+          }};
+}
+
+}  // namespace cullers
+}  // namespace vislab
