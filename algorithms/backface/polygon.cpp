@@ -33,8 +33,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "algorithms/backface/facing_culler.h"
-#include "algorithms/backface/plane_kernel.h"
+#include "algorithms/backface/plane_culler.h"
 #include "common/culler/registry.h"
 
 namespace vislab {
@@ -106,41 +105,15 @@ class CountingCuller : public FacingCuller {
   std::uint64_t triangles_tested_ = 0;
 };
 
-class Hesse : public CountingCuller {
+class Hesse : public PlaneCuller {
  public:
-  explicit Hesse(bool cull_open) : CountingCuller(describe(), cull_open) {}
+  explicit Hesse(bool cull_open) : PlaneCuller(describe(), cull_open) {}
 
  protected:
-  void clear() override {
-    place_.clear();
-    planes_.clear();
+  std::optional<PlaneTest> find_eye(const ObjectView& view, const MeshFrame& frame,
+                                    const PlaneArrays& planes) override {
+    return plane_test(view.eye, frame, planes);
   }
-  void add_mesh(MeshId id, const Mesh& mesh, const MeshFrame& frame, const BuildContext&) override {
-    place_.resize(id + 1);
-    place_[id] = planes_.size();
-    planes_.emplace_back(mesh, frame);
-  }
-  std::span<const std::uint64_t> mark_mesh(const ObjectView& view) override {
-    // Once for all ranges of the object.
-    now_ = &planes_[place_[view.mesh]];
-    test_ = plane_test(view.eye, frame_of(view.mesh), *now_);
-    return {};
-  }
-  void mark(const ObjectView&, std::uint32_t first, std::uint32_t count,
-            std::uint64_t* back) override {
-    mark_behind(*now_, test_, first, count, back);
-  }
-  std::size_t mesh_bytes() const override {
-    std::size_t sum = place_.capacity() * sizeof(std::size_t);
-    for (const PlaneArrays& planes : planes_) sum += sizeof(PlaneArrays) + planes.bytes();
-    return sum;
-  }
-
- private:
-  std::vector<std::size_t> place_;  // by mesh, in planes_
-  std::vector<PlaneArrays> planes_;
-  const PlaneArrays* now_ = nullptr;  // of the object under test
-  PlaneTest test_{};
 };
 
 /// Triangle by triangle in double.

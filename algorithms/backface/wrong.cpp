@@ -10,10 +10,8 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 
-#include "algorithms/backface/facing_culler.h"
-#include "algorithms/backface/plane_kernel.h"
+#include "algorithms/backface/plane_culler.h"
 #include "common/culler/registry.h"
 
 namespace vislab {
@@ -33,45 +31,22 @@ struct Mistake {
 };
 
 /// Planes as backface.polygon has them, with another idea of where the eye is.
-class WrongEye : public FacingCuller {
+class WrongEye : public PlaneCuller {
  public:
-  /// Nothing: the object is kept whole.
   using FindEye = std::optional<PlaneTest> (*)(const ObjectView& view, const MeshFrame& frame,
                                                const PlaneArrays& planes);
 
   WrongEye(CullerInfo info, bool cull_open, FindEye find)
-      : FacingCuller(std::move(info), cull_open), find_(find) {}
+      : PlaneCuller(std::move(info), cull_open), find_(find) {}
 
  protected:
-  void clear() override {
-    place_.clear();
-    planes_.clear();
-  }
-  void add_mesh(MeshId id, const Mesh& mesh, const MeshFrame& frame, const BuildContext&) override {
-    place_.resize(id + 1);
-    place_[id] = planes_.size();
-    planes_.emplace_back(mesh, frame);
-  }
-  void mark_range(const ObjectView& view, std::uint32_t first, std::uint32_t count,
-                  std::uint64_t* back) override {
-    const PlaneArrays& planes = planes_[place_[view.mesh]];
-    const std::optional<PlaneTest> test = find_(view, frame_of(view.mesh), planes);
-    if (test) {
-      mark_behind(planes, *test, first, count, back);
-    } else {
-      std::fill_n(back, words_of(count), 0);
-    }
-  }
-  std::size_t mesh_bytes() const override {
-    std::size_t sum = place_.capacity() * sizeof(std::size_t);
-    for (const PlaneArrays& planes : planes_) sum += sizeof(PlaneArrays) + planes.bytes();
-    return sum;
+  std::optional<PlaneTest> find_eye(const ObjectView& view, const MeshFrame& frame,
+                                    const PlaneArrays& planes) override {
+    return find_(view, frame, planes);
   }
 
  private:
   FindEye find_;
-  std::vector<std::size_t> place_;  // by mesh, in planes_
-  std::vector<PlaneArrays> planes_;
 };
 
 std::unique_ptr<ICuller> view_direction(CullerInfo info, bool cull_open) {
