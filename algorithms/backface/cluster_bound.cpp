@@ -100,7 +100,7 @@ ClusterEye cluster_eye(const MeshEye& eye, const MeshFrame& frame, double reach)
   return result;
 }
 
-Facing facing_of(const ClusterBound& bound, const ClusterEye& eye) {
+ClusterFacing facing_of(const ClusterBound& bound, const ClusterEye& eye) {
   const glm::vec3 way = eye.perspective ? eye.position - bound.origin : eye.position;
   const glm::vec3 most(way.x > 0.0F ? bound.high.x : bound.low.x,
                        way.y > 0.0F ? bound.high.y : bound.low.y,
@@ -114,9 +114,9 @@ Facing facing_of(const ClusterBound& bound, const ClusterEye& eye) {
     most_value -= bound.back;
     least_value -= bound.front;
   }
-  if (most_value < -eye.limit) return Facing::back;
-  if (least_value > eye.limit) return Facing::front;
-  return Facing::mixed;
+  if (most_value < -eye.limit) return ClusterFacing::back;
+  if (least_value > eye.limit) return ClusterFacing::front;
+  return ClusterFacing::mixed;
 }
 
 }  // namespace vislab::backface_culling

@@ -52,9 +52,9 @@ struct ClusterEye {
 /// `reach` is the largest absolute coordinate of all clusters' origins.
 ClusterEye cluster_eye(const MeshEye& eye, const MeshFrame& frame, double reach);
 
-enum class Facing { mixed, back, front };
+enum class ClusterFacing { mixed, back, front };
 
 /// The test in its scalar form: the reference of the kernels.
-Facing facing_of(const ClusterBound& bound, const ClusterEye& eye);
+ClusterFacing facing_of(const ClusterBound& bound, const ClusterEye& eye);
 
 }  // namespace vislab::backface_culling

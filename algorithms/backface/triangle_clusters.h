@@ -26,7 +26,7 @@ namespace vislab::backface_culling {
 struct ClusterSettings {
   /// Triangles in a cluster before any are joined, at least 1. Small meshes get smaller ones: so
   /// many that there are least_clusters.
-  std::uint32_t size = 8;
+  std::uint32_t size = 16;
   /// Where eyes usually are: the distance from the middle of the mesh, as a multiple of its size
   /// (MeshFrame::size), at least 2. What is near and what is probable is measured with it.
   double eye_distance = 3.0;

@@ -1,0 +1,43 @@
+// Lists of triangles that are marked together, as short as they can be kept.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/scene/error.h"
+
+namespace vislab::backface_culling {
+
+/// Runs of consecutive triangles of a mesh, 4 bytes each: at most 32 triangles that lie in one word
+/// of 64, so that marking a run is one operation on one word.
+class RunList {
+ public:
+  static constexpr std::uint32_t longest = 32;
+  static constexpr std::uint32_t most_triangles = 1U << 27U;
+
+  /// Throws InputError for a mesh that has too many triangles to be numbered here.
+  static void check(std::size_t triangles);
+
+  /// Appends ascending triangles.
+  void append(std::span<const std::uint32_t> triangles);
+
+  /// Sets the bits of the triangles of runs [first, end).
+  void mark(std::uint32_t first, std::uint32_t end, std::uint64_t* bits) const {
+    for (std::uint32_t i = first; i < end; ++i) {
+      const std::uint32_t triangle = runs_[i] / longest;
+      const std::uint64_t run = (std::uint64_t{2} << (runs_[i] % longest)) - 1;
+      bits[triangle / 64] |= run << (triangle % 64);
+    }
+  }
+
+  std::uint32_t size() const { return static_cast<std::uint32_t>(runs_.size()); }
+  void shrink() { runs_.shrink_to_fit(); }
+  void clear() { runs_.clear(); }
+  std::size_t bytes() const { return runs_.capacity() * sizeof(std::uint32_t); }
+
+ private:
+  std::vector<std::uint32_t> runs_;  // first triangle * longest + count - 1
+};
+
+}  // namespace vislab::backface_culling
