@@ -1,9 +1,14 @@
-// backface.polygon on meshes from packages, which ./lab test fetches, judged by rays.
+// Cullers of back faces on meshes from packages, which ./lab test fetches, judged by rays, by
+// images and by exact predicates.
 #include <gtest/gtest.h>
 
+#include <iostream>
+
+#include "common/judge/image_judge.h"
 #include "common/judge/metrics.h"
 #include "common/scene/library.h"
 #include "tests/algorithms/run_culler.h"
+#include "tests/geometry/exact_facing.h"
 
 namespace vislab {
 namespace {
@@ -82,6 +87,67 @@ TEST_P(BackfaceOnMeshesThatCrossThemselves, KeepsThemWholeAndLosesNothing) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, BackfaceOnMeshesThatCrossThemselves, testing::Values("cow", "man"),
                          name_of);
+
+/// Of the conservative ones, on meshes that the eye is outside of. Those that need a device leave
+/// out nothing themselves; their contract is checked on the image.
+class EveryBackfaceCuller : public BackfaceOnRealMeshes {};
+
+TEST_P(EveryBackfaceCuller, LosesNoSampleAndNoFrontFaceAndChangesDisputedPixelsOnly) {
+  const Scene& scene = loaded_.scene;
+  const Path path = load_path(loaded_.default_path, scene, viewport, 3, folders());
+  RayCaster caster(scene, settings);
+  ImageJudge images(scene);
+  Registry registry;
+  register_all_cullers(registry);
+  struct Judged {
+    std::string name;
+    CullerRun run;
+    test::FacingCounts facings;
+    std::uint64_t lost = 0;
+    ImageVerdict image;
+  };
+  std::vector<std::unique_ptr<Judged>> cullers;
+  for (const auto& [name, entry] : registry.entries()) {
+    const CullerInfo& info = entry.info;
+    if (info.culls != Culls::back_faces || info.guarantee != Guarantee::conservative ||
+        info.needs_device) {
+      continue;
+    }
+    cullers.emplace_back(new Judged{name, CullerRun(name, scene), {}, 0, {}});
+  }
+  EXPECT_GE(cullers.size(), 2U);
+  for (const PathFrame& now : path.frames) {
+    const Frame frame = cullers.front()->run.frame(now.camera, viewport);
+    const FrameTruth truth = caster.trace(frame);
+    images.start(frame, truth);
+    const std::vector<test::Facing> facings = test::exact_facings(scene, frame);
+    for (const std::unique_ptr<Judged>& culler : cullers) {
+      culler->run.update(now.camera, now.changes);
+      const std::vector<TriangleRange> ranges = culler->run.emitted(now.camera);
+      const VisibleSet kept = set_of(scene, ranges);
+      culler->facings += test::count_facings(scene, frame, facings, ranges);
+      const Verdict verdict = judge_set(frame, truth, kept, Granularity::triangle, caster);
+      culler->lost += verdict.false_px + verdict.false_jittered;
+      const ImageVerdict image = images.judge(frame, kept);
+      culler->image.image_px += image.image_px;
+      culler->image.disputed_image_px += image.disputed_image_px;
+    }
+  }
+  for (const std::unique_ptr<Judged>& culler : cullers) {
+    std::cout << culler->name << ": " << culler->facings.recall() << " of " << culler->facings.back
+              << " back faces left out, " << culler->image.disputed_image_px
+              << " disputed pixels differ\n";
+    EXPECT_TRUE(culler->facings.all_right())
+        << culler->name << ": " << culler->facings.front_left_out << " front faces and "
+        << culler->facings.edge_on_left_out << " edge-on ones left out";
+    EXPECT_GT(culler->facings.recall(), 0.01) << culler->name;
+    EXPECT_EQ(culler->lost, 0U) << culler->name;
+    EXPECT_EQ(culler->image.image_px, 0U) << culler->name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, EveryBackfaceCuller,
+                         testing::Values("bunny", "elephant", "hares_14", "bumpy_high"), name_of);
 
 TEST(BackfaceOnTheCow, LosesWhatItShowsOfItsBackIfToldTo) {
   const Sum sum = judged("backface.polygon[open=cull]", load_scene("cow", folders()), 12);
