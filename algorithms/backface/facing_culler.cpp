@@ -30,6 +30,7 @@ void FacingCuller::build(const Scene& scene, const BuildContext& context) {
     meshes_.push_back({mesh.solid || cull_open_, MeshFrame(mesh)});
     if (meshes_.back().tested) add_mesh(id, mesh, meshes_.back().frame, context);
   }
+  finish();
 }
 
 void FacingCuller::cull(const Frame& frame, const Candidates& candidates, DrawSink& out) {

@@ -47,6 +47,8 @@ class FacingCuller : public ICuller {
   /// meshes that are never tested are left out.
   virtual void add_mesh(MeshId id, const Mesh& mesh, const MeshFrame& frame,
                         const BuildContext& context) = 0;
+  /// All meshes have been added: what a method prepares for each object.
+  virtual void finish() {}
   /// A frame begins to be culled: what holds for all of its objects. Called by every cull().
   virtual void begin(const Frame& /*frame*/) {}
   /// An object's turn. Methods that decide about a whole mesh at once do so here and return a bit
