@@ -23,7 +23,7 @@ using test::FacingCounts;
 #if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
 constexpr int world_count = 6;
 #else
-constexpr int world_count = 150;
+constexpr int world_count = 60;
 #endif
 constexpr int cameras_per_world = 25;
 
@@ -179,10 +179,10 @@ TEST_F(BackfaceExactness, NothingDependsOnTheInstructionSetOrTheNumberOfThreads)
         return all;
       };
       const auto expected = answers(1);
-      EXPECT_EQ(answers(2), expected) << spec << " with two threads";
+      EXPECT_TRUE(answers(2) == expected) << spec << " with two threads";
       for (const std::string& target : simd_targets()) {
         const SimdTargetScope scope(target);
-        EXPECT_EQ(answers(1), expected) << spec << " with " << target;
+        EXPECT_TRUE(answers(1) == expected) << spec << " with " << target;
       }
     }
   }
