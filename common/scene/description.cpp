@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -27,10 +28,19 @@ MeshSource read_mesh_keys(const Settings& table) {
   return mesh;
 }
 
-MeshSource read_mesh(const Settings& table) {
-  MeshSource mesh = read_mesh_keys(table);
+/// Is z up, not y?
+bool read_z_up(const Settings& table) {
+  const std::string up = table.text("up", "y");
+  if (up != "y" && up != "z") {
+    throw InputError(table.where() + ": `up` is wrong; it must be \"y\" or \"z\"");
+  }
+  return up == "z";
+}
+
+ModelSource read_model(const Settings& table) {
+  const ModelSource model{read_mesh_keys(table), read_z_up(table)};
   table.done();
-  return mesh;
+  return model;
 }
 
 QuakeSource read_quake(const Settings& table) {
@@ -49,12 +59,59 @@ std::uint64_t seed_of(const Settings& table) {
       table.whole("seed", 0, std::numeric_limits<std::int64_t>::max(), 1));
 }
 
+RibbedSphereSource read_ribbed_sphere(const Settings& table) {
+  RibbedSphereSource sphere;
+  sphere.meridians =
+      static_cast<std::uint32_t>(table.whole("meridians", 3, 10'000, sphere.meridians));
+  sphere.parallels =
+      static_cast<std::uint32_t>(table.whole("parallels", 1, 10'000, sphere.parallels));
+  sphere.ribs = static_cast<std::uint32_t>(table.whole("ribs", 0, 1000, sphere.ribs));
+  return sphere;
+}
+
+BumpySphereParameters read_bumpy_sphere(const Settings& table) {
+  BumpySphereParameters sphere;
+  sphere.subdivisions =
+      static_cast<std::uint32_t>(table.whole("subdivisions", 1, 1000, sphere.subdivisions));
+  const std::string bumps = table.text("bumps", "none");
+  if (bumps == "low") {
+    sphere.bumps = Bumps::low;
+  } else if (bumps == "high") {
+    sphere.bumps = Bumps::high;
+  } else if (bumps != "none") {
+    throw InputError(table.where() + ": " +
+                     unknown_name("kind of bumps", bumps, {"none", "low", "high"}).what());
+  }
+  sphere.hole = table.number("hole", 0.0, 0.9, sphere.hole);
+  sphere.mesh_offset = table.point("mesh_offset", sphere.mesh_offset);
+  if (glm::length(sphere.mesh_offset) > 1e6) {
+    throw InputError(table.where() + ": `mesh_offset` is wrong; it must be at most 1e6 m long");
+  }
+  return sphere;
+}
+
+/// Keys of a mesh, a file's or a made one's, which may stand beside others in the same table.
+ShapeSource read_shape_keys(const Settings& table) {
+  if (!table.has("shape")) return read_mesh_keys(table);
+  const std::string shape = table.text("shape");
+  if (shape == "bumpy_sphere") return read_bumpy_sphere(table);
+  if (shape == "ribbed_sphere") return read_ribbed_sphere(table);
+  throw InputError(table.where() + ": " +
+                   unknown_name("shape", shape, {"bumpy_sphere", "ribbed_sphere"}).what());
+}
+
+ShapeSource read_shape(const Settings& table) {
+  ShapeSource shape = read_shape_keys(table);
+  table.done();
+  return shape;
+}
+
 HaresSource read_hares(const Settings& table) {
   HaresSource hares;
   hares.parameters.count = count_of(table, "count", 1, 100'000);
   hares.parameters.size_m = table.number("size_m", 1e-3, huge, hares.parameters.size_m);
   hares.parameters.spacing_m = table.number("spacing_m", 1e-3, huge, hares.parameters.spacing_m);
-  hares.mesh = read_mesh(table.table("mesh"));
+  hares.mesh = read_shape(table.table("mesh"));
   return hares;
 }
 
@@ -97,12 +154,15 @@ BoxFieldParameters read_field(const Settings& table) {
   field.clear_radius_m = table.number("clear_radius_m", 0.0, 0.5 * field.extent_m,
                                       std::min(field.clear_radius_m, 0.5 * field.extent_m));
   field.rotated = table.flag("rotated", false);
+  field.mirrored = table.number("mirrored", 0.0, 1.0, field.mirrored);
+  field.shear = table.number("shear", 0.0, 1000.0, field.shear);
   field.seed = seed_of(table);
   return field;
 }
 
 /// Boxes that reach around the origin from everywhere could never be placed clear of it.
-void require_room(const Settings& table, const BoxFieldParameters& field, const glm::dvec3& shape) {
+void require_room(const Settings& table, const BoxFieldParameters& field, glm::dvec3 shape) {
+  shape.x += field.shear * shape.y;
   const double reach_m = field.max_half_size_m * glm::length(shape) + field.clear_radius_m;
   if (field.clear_radius_m > 0.0 && reach_m > field.extent_m) {
     throw InputError(table.where() + ": half a box's diagonal and `clear_radius_m` are " +
@@ -124,9 +184,22 @@ BoxFieldParameters read_box_field(const Settings& table) {
 MeshFieldSource read_mesh_field(const Settings& table) {
   MeshFieldSource field;
   field.parameters = read_field(table);
-  field.mesh = read_mesh(table.table("mesh"));
+  field.mesh = read_shape(table.table("mesh"));
   require_room(table, field.parameters, glm::dvec3(1.0));
   return field;
+}
+
+GrazingSlabsParameters read_grazing_slabs(const Settings& table) {
+  GrazingSlabsParameters slabs;
+  slabs.count = static_cast<std::uint32_t>(table.whole("count", 1, 1'000'000, slabs.count));
+  slabs.tilt_rad = table.number("tilt_rad", 0.0, 1.5, slabs.tilt_rad);
+  slabs.distance_m = table.number("distance_m", 1e-3, huge, slabs.distance_m);
+  slabs.half_width_m = table.number("half_width_m", 1e-3, huge, slabs.half_width_m);
+  slabs.thickness_m = table.number("thickness_m", 1e-6, huge, slabs.thickness_m);
+  slabs.subdivisions =
+      static_cast<std::uint32_t>(table.whole("subdivisions", 1, 200, slabs.subdivisions));
+  slabs.seed = seed_of(table);
+  return slabs;
 }
 
 HousesParameters read_houses(const Settings& table) {
@@ -140,53 +213,24 @@ HousesParameters read_houses(const Settings& table) {
   return houses;
 }
 
-RibbedSphereSource read_ribbed_sphere(const Settings& table) {
-  RibbedSphereSource sphere;
-  sphere.meridians =
-      static_cast<std::uint32_t>(table.whole("meridians", 3, 10'000, sphere.meridians));
-  sphere.parallels =
-      static_cast<std::uint32_t>(table.whole("parallels", 1, 10'000, sphere.parallels));
-  sphere.ribs = static_cast<std::uint32_t>(table.whole("ribs", 0, 1000, sphere.ribs));
-  return sphere;
-}
-
-BumpySphereParameters read_bumpy_sphere(const Settings& table) {
-  BumpySphereParameters sphere;
-  sphere.subdivisions =
-      static_cast<std::uint32_t>(table.whole("subdivisions", 1, 1000, sphere.subdivisions));
-  const std::string bumps = table.text("bumps", "none");
-  if (bumps == "low") {
-    sphere.bumps = Bumps::low;
-  } else if (bumps == "high") {
-    sphere.bumps = Bumps::high;
-  } else if (bumps != "none") {
-    throw InputError(table.where() + ": " +
-                     unknown_name("kind of bumps", bumps, {"none", "low", "high"}).what());
-  }
-  sphere.hole = table.number("hole", 0.0, 0.9, sphere.hole);
-  sphere.mesh_offset = table.point("mesh_offset", sphere.mesh_offset);
-  if (glm::length(sphere.mesh_offset) > 1e6) {
-    throw InputError(table.where() + ": `mesh_offset` is wrong; it must be at most 1e6 m long");
-  }
-  return sphere;
-}
-
 PlacedMesh read_placed(const Settings& table) {
   PlacedMesh placed;
-  if (!table.has("shape")) {
-    placed.mesh = read_mesh_keys(table);
-  } else if (const std::string shape = table.text("shape"); shape == "ribbed_sphere") {
-    placed.mesh = read_ribbed_sphere(table);
-  } else {
-    throw InputError(table.where() + ": " + unknown_name("shape", shape, {"ribbed_sphere"}).what());
-  }
-  const std::string up = table.text("up", "y");
-  if (up != "y" && up != "z") {
-    throw InputError(table.where() + ": `up` is wrong; it must be \"y\" or \"z\"");
-  }
-  placed.z_up = up == "z";
+  placed.mesh = read_shape_keys(table);
+  placed.z_up = read_z_up(table);
   placed.at = table.point("at");
   placed.size_m = table.number("size_m", 1e-6, huge);
+  placed.shear = table.point("shear", placed.shear);
+  placed.scale = table.point("scale", placed.scale);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(std::abs(placed.scale[axis]) >= 1e-6 && std::abs(placed.scale[axis]) <= huge)) {
+      throw InputError(table.where() + ": `scale` is wrong; its factors must be from 1e-6 to 1e6 " +
+                       "or from -1e6 to -1e-6");
+    }
+    if (std::abs(placed.shear[axis]) > 1000.0) {
+      throw InputError(table.where() +
+                       ": `shear` is wrong; its factors must be from -1000 to 1000");
+    }
+  }
   placed.heading_rad = table.number("heading_deg", -360.0, 360.0, 0.0) * std::numbers::pi / 180.0;
   table.done();
   return placed;
@@ -222,6 +266,8 @@ void read_generator(const Settings& table, SceneDescription& scene) {
     scene.source = read_bumpy_sphere(table);
   } else if (kind == "city") {
     scene.source = read_city(table);
+  } else if (kind == "grazing_slabs") {
+    scene.source = read_grazing_slabs(table);
   } else if (kind == "hares") {
     scene.source = read_hares(table);
   } else if (kind == "houses") {
@@ -231,9 +277,10 @@ void read_generator(const Settings& table, SceneDescription& scene) {
   } else if (kind == "room_ring") {
     scene.source = read_room_ring(table);
   } else {
-    const InputError unknown = unknown_name("generator", kind,
-                                            {"asteroid_belt", "box_field", "bumpy_sphere", "city",
-                                             "hares", "houses", "mesh_field", "room_ring"});
+    const InputError unknown =
+        unknown_name("generator", kind,
+                     {"asteroid_belt", "box_field", "bumpy_sphere", "city", "grazing_slabs",
+                      "hares", "houses", "mesh_field", "room_ring"});
     throw InputError(table.where() + ": " + unknown.what());
   }
   table.done();
@@ -259,7 +306,7 @@ SceneDescription read_scene_description(const std::filesystem::path& file) {
                      ": a scene needs exactly one of the tables mesh, quake3, objects and " +
                      "generator");
   }
-  if (mesh) scene.source = read_mesh(settings.table("mesh"));
+  if (mesh) scene.source = read_model(settings.table("mesh"));
   if (quake) scene.source = read_quake(settings.table("quake3"));
   if (objects) {
     std::vector<PlacedMesh> placed;

@@ -2,9 +2,10 @@
 //
 // A scene is one of the tables `mesh` and `quake3`, a list of tables `objects`, or a table
 // `generator` with its `kind`. Keys are named as the members below and in generators.h; a mesh's
-// file has the keys `package` and `file`. Besides, fields know `edge_m` instead of half sizes,
-// objects `shape` = "ribbed_sphere" instead of a file, `up` = "y" | "z" and `heading_deg`, and
-// every scene without cells `offset`.
+// file has the keys `package` and `file`. Besides, fields know `edge_m` instead of half sizes;
+// objects and the meshes of generators `shape` = "ribbed_sphere" | "bumpy_sphere" instead of a
+// file; objects and `mesh` know `up` = "y" | "z", objects `heading_deg`, and every scene without
+// cells `offset`.
 #pragma once
 
 #include <cstdint>
@@ -32,20 +33,14 @@ struct MeshSource {
   friend bool operator==(const MeshSource&, const MeshSource&) = default;
 };
 
+/// The table `mesh`: a whole file.
+struct ModelSource {
+  MeshSource mesh;
+  bool z_up = false;  // the file's z axis is up, not y
+};
+
 struct QuakeSource {
   FileSource source;
-};
-
-/// Instances of a mesh along the axes.
-struct HaresSource {
-  MeshSource mesh;
-  HaresParameters parameters;
-};
-
-/// Instances of a mesh, at random in a cube.
-struct MeshFieldSource {
-  MeshSource mesh;
-  BoxFieldParameters parameters;
 };
 
 struct RibbedSphereSource {
@@ -54,12 +49,31 @@ struct RibbedSphereSource {
   friend bool operator==(const RibbedSphereSource&, const RibbedSphereSource&) = default;
 };
 
+/// A single mesh: of a file, or made.
+using ShapeSource = std::variant<MeshSource, RibbedSphereSource, BumpySphereParameters>;
+
+/// Instances of a mesh along the axes.
+struct HaresSource {
+  ShapeSource mesh;
+  HaresParameters parameters;
+};
+
+/// Instances of a mesh, at random in a cube.
+struct MeshFieldSource {
+  ShapeSource mesh;
+  BoxFieldParameters parameters;
+};
+
 /// One mesh, and where it stands.
 struct PlacedMesh {
-  std::variant<MeshSource, RibbedSphereSource> mesh;
-  bool z_up = false;         // the mesh's z axis is up, not y
-  glm::dvec3 at{0.0};        // middle of the lower side of its box
-  double size_m = 1.0;       // longest side of the mesh's box
+  ShapeSource mesh;
+  bool z_up = false;    // the mesh's z axis is up, not y
+  glm::dvec3 at{0.0};   // middle of the lower side of its box
+  double size_m = 1.0;  // longest side of the mesh's box before that is stretched
+  // The upright mesh is sheared, x going along with y and z and y with z by the factors
+  // [xy, xz, yz], and then stretched along its axes; negative factors mirror.
+  glm::dvec3 shear{0.0};
+  glm::dvec3 scale{1.0};
   double heading_rad = 0.0;  // counter-clockwise about the vertical, seen from above
 };
 
@@ -69,9 +83,9 @@ struct SceneDescription {
   std::string description;
   std::string default_path;  // empty: fitted to the scene
   glm::dvec3 offset{0.0};    // added to all objects' places, metres
-  std::variant<MeshSource, QuakeSource, std::vector<PlacedMesh>, HaresSource, MeshFieldSource,
+  std::variant<ModelSource, QuakeSource, std::vector<PlacedMesh>, HaresSource, MeshFieldSource,
                AsteroidBeltParameters, BoxFieldParameters, BumpySphereParameters, CityParameters,
-               HousesParameters, RoomRingParameters>
+               GrazingSlabsParameters, HousesParameters, RoomRingParameters>
       source;
 };
 

@@ -40,10 +40,18 @@ std::filesystem::path located(const FileSource& source, const SceneDescription& 
   return file;
 }
 
-/// The mesh turned upright and to its heading, scaled, and put on its place.
+/// Turns z up: y becomes -z.
+glm::dmat3 upright(bool z_up) {
+  return z_up ? glm::dmat3({1.0, 0.0, 0.0}, {0.0, 0.0, -1.0}, {0.0, 1.0, 0.0}) : glm::dmat3(1.0);
+}
+
+/// The mesh turned upright, sheared and stretched, turned to its heading, and put on its place.
 glm::dmat4x3 placement(const PlacedMesh& placed, const Mesh& mesh) {
   glm::dmat3 turn = rotation({0.0, 1.0, 0.0}, placed.heading_rad);
-  if (placed.z_up) turn = turn * glm::dmat3({1.0, 0.0, 0.0}, {0.0, 0.0, -1.0}, {0.0, 1.0, 0.0});
+  for (int axis = 0; axis < 3; ++axis) turn[axis] *= placed.scale[axis];
+  turn[2] += turn[0] * placed.shear[1] + turn[1] * placed.shear[2];
+  turn[1] += turn[0] * placed.shear[0];
+  if (placed.z_up) turn = turn * upright(true);
   const glm::dvec3 half = bounds_of(mesh.positions).half_size();
   turn *= 0.5 * placed.size_m / std::max({half.x, half.y, half.z});
   glm::dvec3 low(std::numeric_limits<double>::infinity());
@@ -63,16 +71,11 @@ class Maker {
   Maker(const SceneDescription& scene, const DataFolders& folders)
       : scene_(scene), folders_(folders) {}
 
-  Scene operator()(const MeshSource& mesh) const {
-    Scene scene = import_mesh_file(located(mesh.source, scene_, folders_));
-    if (mesh.simplify_triangles > 0) {
-      if (scene.meshes.size() != 1) {
-        throw InputError("scene " + scene_.name + ": only a file with a single mesh can be " +
-                         "simplified; this one has " + std::to_string(scene.meshes.size()));
-      }
-      // finish() refuses broken meshes, which must not reach the simplifier.
-      scene.finish();
-      scene.meshes[0] = simplified(scene.meshes[0], mesh.simplify_triangles);
+  Scene operator()(const ModelSource& model) const {
+    Scene scene = model_of(model.mesh);
+    if (model.z_up) {
+      const glm::dmat3 turn = upright(true);
+      for (Object& object : scene.objects) object.transform = turn * object.transform;
     }
     return scene;
   }
@@ -81,14 +84,13 @@ class Maker {
   }
   Scene operator()(const std::vector<PlacedMesh>& placed) const {
     Scene scene;
-    std::vector<std::variant<MeshSource, RibbedSphereSource>> known;
+    std::vector<ShapeSource> known;
     for (const PlacedMesh& one : placed) {
       const auto found = std::find(known.begin(), known.end(), one.mesh);
       const auto mesh = static_cast<MeshId>(found - known.begin());
       if (found == known.end()) {
         known.push_back(one.mesh);
-        scene.meshes.push_back(
-            std::visit([&](const auto& source) { return mesh_of(source); }, one.mesh));
+        scene.meshes.push_back(mesh_of(one.mesh));
       }
       scene.objects.push_back({mesh, placement(one, scene.meshes[mesh]), none_id});
     }
@@ -105,11 +107,29 @@ class Maker {
   Scene operator()(const BoxFieldParameters& field) const { return make_box_field(field); }
   Scene operator()(const BumpySphereParameters& sphere) const { return make_bumpy_sphere(sphere); }
   Scene operator()(const CityParameters& city) const { return make_city(city); }
+  Scene operator()(const GrazingSlabsParameters& slabs) const { return make_grazing_slabs(slabs); }
   Scene operator()(const RoomRingParameters& ring) const { return make_room_ring(ring); }
 
  private:
-  Mesh mesh_of(const MeshSource& source) const {
-    Scene scene = (*this)(source);
+  Scene model_of(const MeshSource& mesh) const {
+    Scene scene = import_mesh_file(located(mesh.source, scene_, folders_));
+    if (mesh.simplify_triangles > 0) {
+      if (scene.meshes.size() != 1) {
+        throw InputError("scene " + scene_.name + ": only a file with a single mesh can be " +
+                         "simplified; this one has " + std::to_string(scene.meshes.size()));
+      }
+      // finish() refuses broken meshes, which must not reach the simplifier.
+      scene.finish();
+      scene.meshes[0] = simplified(scene.meshes[0], mesh.simplify_triangles);
+    }
+    return scene;
+  }
+
+  Mesh mesh_of(const ShapeSource& shape) const {
+    return std::visit([&](const auto& source) { return made(source); }, shape);
+  }
+  Mesh made(const MeshSource& source) const {
+    Scene scene = model_of(source);
     if (scene.meshes.size() != 1) {
       throw InputError("scene " + scene_.name + ": " + source.source.file + " has " +
                        std::to_string(scene.meshes.size()) + " meshes; it must have a single one");
@@ -118,9 +138,10 @@ class Maker {
     scene.finish();
     return std::move(scene.meshes[0]);
   }
-  Mesh mesh_of(const RibbedSphereSource& sphere) const {
+  Mesh made(const RibbedSphereSource& sphere) const {
     return ribbed_sphere_mesh(sphere.meridians, sphere.parallels, sphere.ribs);
   }
+  Mesh made(const BumpySphereParameters& sphere) const { return bumpy_sphere_mesh(sphere); }
 
   const SceneDescription& scene_;
   const DataFolders& folders_;

@@ -41,7 +41,16 @@ TEST(Library, ListsTheScenesOfTheRepositoryByName) {
                                  "asteroid_belt",
                                  "asteroid_belt_60",
                                  "hare_field_1000",
-                                 "box_field_100k"}) {
+                                 "box_field_100k",
+                                 "apartment",
+                                 "bumpy_smooth",
+                                 "bumpy_high_1m",
+                                 "bumpy_hole",
+                                 "distorted_field",
+                                 "dragon_full",
+                                 "grazing_slabs",
+                                 "mirrored_shapes",
+                                 "sphere_field"}) {
     EXPECT_EQ(std::count_if(scenes.begin(), scenes.end(),
                             [&](const SceneSummary& scene) { return scene.name == name; }),
               1)
@@ -66,6 +75,9 @@ TEST(Library, GeneratedScenesAreTheSameInEveryBuild) {
   EXPECT_EQ(hash("room_ring"), "94ae1505ac7618fc67687a3512a675e9");
   EXPECT_EQ(hash("asteroid_belt_60"), "4c1b14f745a3069b29bc713fe5571b8b");
   EXPECT_EQ(hash("city100_a"), "eb5efdb15253c9499e931c5ac43bd2aa");
+  EXPECT_EQ(hash("bumpy_low"), "e44bce4cf1d460720ee82229b6cf4c8b");
+  EXPECT_EQ(hash("distorted_field"), "be28bdedd133a8ec52edc31bec22a8fe");
+  EXPECT_EQ(hash("grazing_slabs"), "e2aa8bb8c3d49b0e7a445d194bb922d4");
 }
 
 TEST(Library, PathsAreTheSameInEveryBuild) {
@@ -150,7 +162,7 @@ TEST(Library, RefusesDescriptionsThatAreWrong) {
   EXPECT_TRUE(says(refused(folder, "[mesh]\nflie = \"a.off\"\n"), "`file` is missing"));
   EXPECT_TRUE(says(refused(folder, "[mesh]\nfile = \"a.off\"\n"), "a.off does not exist"));
   EXPECT_TRUE(says(refused(folder, "[generator]\nkind = \"forest\"\n"),
-                   "`forest` is not a generator; known: asteroid_belt, box_field, city"));
+                   "`forest` is not a generator; known: asteroid_belt, box_field, bumpy_sphere"));
   EXPECT_TRUE(says(refused(folder, "[generator]\nkind = \"box_field\"\ncount = 0\n"),
                    "`count` is wrong; it must be a whole number from 1"));
   EXPECT_TRUE(says(refused(folder, "[generator]\nkind = \"box_field\"\ncount = 1\nsize = 2\n"),
@@ -193,7 +205,8 @@ TEST(Library, RefusesPlacesThatAreWrong) {
   EXPECT_TRUE(says(refused(folder, sphere), "objects 0: `size_m` is missing"));
   EXPECT_TRUE(says(refused(folder, "objects = 3\n"), "`objects` is wrong; it must be a list"));
   EXPECT_TRUE(says(refused(folder, sphere + "size_m = 1\nup = \"x\"\n"), "`up` is wrong"));
-  EXPECT_TRUE(says(refused(folder, "[[objects]]\nshape = \"cone\"\n"), "known: ribbed_sphere"));
+  EXPECT_TRUE(says(refused(folder, "[[objects]]\nshape = \"cone\"\n"),
+                   "known: bumpy_sphere, ribbed_sphere"));
   EXPECT_TRUE(says(refused(folder, sphere + "size_m = 1\n[generator]\nkind = \"city\"\n"),
                    "exactly one of the tables"));
 }

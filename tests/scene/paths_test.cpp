@@ -170,6 +170,22 @@ TEST_F(Paths, RollTheCameraAndPutItsEyeAside) {
   }
 }
 
+TEST_F(Paths, LookAsideByAnAngle) {
+  const std::string eye = "kind = \"turn\"\neye = [1, 2, 30]\nframes = 4\npitch_deg = 20\n";
+  const Path straight = load(eye);
+  const Path aside = load(eye + "off_axis_deg = 30\n");
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Pose& a = straight.frames[i].camera.pose;
+    const Pose& b = aside.frames[i].camera.pose;
+    EXPECT_EQ(b.eye, a.eye);
+    EXPECT_EQ(b.up, a.up);
+    EXPECT_NEAR(glm::dot(b.back, a.back), std::cos(std::acos(-1.0) / 6.0), 1e-12);
+    EXPECT_NEAR(glm::dot(-b.back, a.right), 0.5, 1e-12);
+    EXPECT_LT(glm::distance(glm::cross(b.right, b.up), b.back), 1e-12);
+  }
+  EXPECT_TRUE(says(refused(eye + "off_axis_deg = 91\n"), "`off_axis_deg` is wrong"));
+}
+
 TEST_F(Paths, AnAsymmetricWindowIsShiftedByAShareOfItsWidth) {
   const Lens centred = load("kind = \"orbit\"\nnear_m = 0.5\n").frames[0].camera.lens;
   for (const double share : {-0.5, 0.25, 0.5}) {

@@ -86,6 +86,27 @@ Mesh box_mesh(const glm::dvec3& half_size, std::uint32_t subdivisions, double de
   return mesh;
 }
 
+/// The instances' mirrors and shears, from a sequence of their own: their places do not depend on
+/// it.
+class Distortion {
+ public:
+  explicit Distortion(const BoxFieldParameters& parameters)
+      : parameters_(parameters), random_(~parameters.seed) {}
+
+  /// Half sizes of a box around a sheared one.
+  glm::dvec3 reach(const glm::dvec3& half_size) const {
+    return half_size + glm::dvec3(parameters_.shear * half_size.y, 0.0, 0.0);
+  }
+  void apply_to_next(glm::dmat4x3& transform) {
+    if (parameters_.shear > 0.0) transform[1] += transform[0] * parameters_.shear;
+    if (random_.uniform() < parameters_.mirrored) transform[0] = -transform[0];
+  }
+
+ private:
+  const BoxFieldParameters& parameters_;
+  Random random_;
+};
+
 Scene make_box_field(const BoxFieldParameters& parameters) {
   const glm::dvec3 shape(parameters.elongation, parameters.thickness, 1.0 / parameters.elongation);
   const bool plain = shape == glm::dvec3(1.0) && parameters.subdivisions == 1;
@@ -94,8 +115,11 @@ Scene make_box_field(const BoxFieldParameters& parameters) {
       plain ? cube_mesh() : box_mesh(shape, parameters.subdivisions, parameters.density_ratio));
   scene.objects.reserve(parameters.count);
   Random random(parameters.seed);
+  Distortion distortion(parameters);
   while (scene.objects.size() < parameters.count) {
-    scene.objects.push_back({0, random_box(parameters, shape, false, random), none_id});
+    glm::dmat4x3 transform = random_box(parameters, distortion.reach(shape), false, random);
+    distortion.apply_to_next(transform);
+    scene.objects.push_back({0, transform, none_id});
   }
   return scene;
 }
@@ -108,9 +132,11 @@ Scene make_mesh_field(Mesh mesh, const BoxFieldParameters& parameters) {
   scene.meshes.push_back(std::move(mesh));
   scene.objects.reserve(parameters.count);
   Random random(parameters.seed);
+  Distortion distortion(parameters);
   while (scene.objects.size() < parameters.count) {
-    glm::dmat4x3 transform = random_box(parameters, half * unit, true, random);
+    glm::dmat4x3 transform = random_box(parameters, distortion.reach(half * unit), true, random);
     for (int axis = 0; axis < 3; ++axis) transform[axis] *= unit;
+    distortion.apply_to_next(transform);
     transform[3] -= glm::dmat3(transform) * box.center();
     scene.objects.push_back({0, transform, none_id});
   }

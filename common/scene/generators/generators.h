@@ -25,12 +25,15 @@ struct BoxFieldParameters {
   double thickness = 1.0;          // 0 gives a rectangle that faces up
   std::uint32_t subdivisions = 1;  // of each edge
   double density_ratio =
-      1.0;  // vertices per area at the corner (-, -, -) to those at the opposite one
+      1.0;                // vertices per area at the corner (-, -, -) to those at the opposite one
+  double mirrored = 0.0;  // share of the instances that are mirrored: a negative determinant
+  double shear = 0.0;     // each instance's x goes along with its y by this factor
   std::uint64_t seed = 1;
 };
 
-/// Boxes, uniform in a cube, that share one mesh; axis-aligned unless `rotated`. Needs half
-/// diagonals and clear_radius well below the extent.
+/// Boxes, uniform in a cube, that share one mesh; axis-aligned unless `rotated` or sheared. Needs
+/// half diagonals and clear_radius well below the extent. Where and which they are does not depend
+/// on how many are mirrored, and a larger share mirrors more of the same.
 Scene make_box_field(const BoxFieldParameters& parameters);
 
 /// The same of a mesh: `half sizes` are then half of the longest side of its box, one number for
@@ -127,6 +130,8 @@ struct BumpySphereParameters {
   Bumps bumps = Bumps::none;
   double hole = 0.0;            // share of the surface that is left out, below 1
   glm::dvec3 mesh_offset{0.0};  // of the sphere's middle from the mesh's own origin, metres
+
+  friend bool operator==(const BumpySphereParameters&, const BumpySphereParameters&) = default;
 };
 
 /// A sphere of radius 1 about `mesh_offset`, tessellated as a cube whose sides are grids of n x n
@@ -141,6 +146,22 @@ Mesh bumpy_sphere_mesh(const BumpySphereParameters& parameters);
 /// The same as a scene. Its object's transform takes `mesh_offset` back: the sphere is about the
 /// world's origin whatever the offset, which only costs the vertices precision.
 Scene make_bumpy_sphere(const BumpySphereParameters& parameters);
+
+struct GrazingSlabsParameters {
+  std::uint32_t count = 200;
+  double tilt_rad = 1e-3;     // between a large face and the line from its middle to the origin
+  double distance_m = 10.0;   // of those middles from the origin
+  double half_width_m = 1.0;  // of the square faces
+  double thickness_m = 0.05;
+  std::uint32_t subdivisions = 4;  // of each edge
+  std::uint64_t seed = 1;
+};
+
+/// Thin boxes all around the origin that are seen edge-on from there but for a tilt: the planes of
+/// their upper faces pass it at distance_m * sin(tilt_rad), but for rounding in double. Every
+/// second one turns that face to the origin, the others turn it away. Directions and orientations
+/// are random and do not depend on the tilt. Boxes may overlap.
+Scene make_grazing_slabs(const GrazingSlabsParameters& parameters);
 
 /// A flattened sphere of radius 1 with ribs from pole to pole, like a pumpkin: 2 * meridians *
 /// parallels triangles, meridians * parallels + 2 vertices; closed. Needs 3 meridians and 1

@@ -27,6 +27,7 @@ struct Plan {
   Track track;
   int frames = default_frames;
   LensWishes lens;
+  double off_axis_rad = 0.0;
   double roll_rad = 0.0;
   double eye_offset_m = 0.0;
   std::optional<Motion> motion;
@@ -138,6 +139,7 @@ Plan read_plan(const std::filesystem::path& file, const Scene& scene, int frames
   Plan plan;
   settings.text("description", "");
   plan.lens = read_lens_wishes(settings);
+  plan.off_axis_rad = radians(settings.number("off_axis_deg", -90.0, 90.0, 0.0));
   plan.roll_rad = radians(settings.number("roll_deg", -180.0, 180.0, 0.0));
   plan.eye_offset_m = settings.number("eye_offset_m", -1e6, 1e6, 0.0);
   const std::string kind = settings.text("kind");
@@ -162,10 +164,11 @@ Plan fitted_plan(const Scene& scene, int frames) {
   return plan;
 }
 
-/// The way's poses, each turned about its view and put to its right as the plan says.
+/// The way's poses, each turned aside, about its view, and put to its right as the plan says.
 std::vector<Pose> poses_of(const Plan& plan) {
   std::vector<Pose> poses = plan.track.sampled(plan.frames);
   for (Pose& pose : poses) {
+    if (plan.off_axis_rad != 0.0) pose = turned_right(pose, plan.off_axis_rad);
     if (plan.roll_rad != 0.0) pose = rolled(pose, plan.roll_rad);
     if (plan.eye_offset_m != 0.0) pose.eye += pose.right * plan.eye_offset_m;
   }

@@ -75,6 +75,12 @@ Pose rolled(const Pose& pose, double angle_rad) {
   return {pose.eye, pose.right * c + pose.up * s, pose.up * c - pose.right * s, pose.back};
 }
 
+Pose turned_right(const Pose& pose, double angle_rad) {
+  const double c = std::cos(angle_rad);
+  const double s = std::sin(angle_rad);
+  return {pose.eye, pose.right * c + pose.back * s, pose.up, pose.back * c - pose.right * s};
+}
+
 Track walk_track(const std::vector<glm::dvec3>& points, double turns) {
   const glm::dvec3 first = points[1] - points[0];
   Walker walker(points[0], std::atan2(-first.z, first.x));

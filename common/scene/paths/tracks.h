@@ -41,6 +41,9 @@ Track turn_track(const glm::dvec3& eye, double degrees, double pitch_rad);
 /// A pose turned about its view: its up goes to its left.
 Pose rolled(const Pose& pose, double angle_rad);
 
+/// A pose turned about its up: it looks to what was on its right.
+Pose turned_right(const Pose& pose, double angle_rad);
+
 /// Along straight lines through two points or more, looking where it goes and turning at the
 /// corners; beside that it turns round `turns` times on the whole way.
 Track walk_track(const std::vector<glm::dvec3>& points, double turns);
