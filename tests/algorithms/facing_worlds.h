@@ -26,8 +26,8 @@ inline Mesh snapped(Mesh mesh) {
   return mesh;
 }
 
-/// A random linear map that is not too flat: turned, sheared, scaled, half of them mirrored. With
-/// `exact`, of few binary digits.
+/// A random linear map: turned, sheared, scaled, half of them mirrored, some so flat that their
+/// inverse loses digits. With `exact`, of few binary digits and not flat.
 inline glm::dmat3 linear_map(Random& random, bool exact) {
   glm::dmat3 linear;
   do {
@@ -36,6 +36,10 @@ inline glm::dmat3 linear_map(Random& random, bool exact) {
       linear[i / 3][i % 3] = exact ? std::round(value * 4.0) / 4.0 : value;
     }
   } while (std::abs(glm::determinant(linear)) < 0.3);
+  if (!exact && random.below(3) == 0) {
+    linear[2] = linear[0] * random.uniform(-1.0, 1.0) + linear[1] * random.uniform(-1.0, 1.0) +
+                linear[2] * std::pow(10.0, random.uniform(-6.0, -2.0));
+  }
   return linear;
 }
 
