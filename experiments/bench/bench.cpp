@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -82,6 +83,7 @@ Result contest(const BenchCase& bench_case, benchmark::State& state) {
   const double typical_s = median(all_ours);
   result.value = sides->work() > 0.0 ? sides->work() / typical_s
                                      : typical_s * units_per_second(bench_case.unit);
+  if (!std::isnan(sides->figure())) result.value = sides->figure();
   result.ratio = paired_ratio(our_times, their_times);
   return result;
 }

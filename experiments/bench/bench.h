@@ -8,6 +8,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -27,6 +28,9 @@ class Contest {
   /// For rates: how much one call does, in the unit times seconds (1e6 rays for "Mray/s"). 0: the
   /// value is the time of a call, and the unit a unit of time, "ns", "us" or "ms".
   virtual double work() const { return 0.0; }
+  /// What is reported in place of our time or rate, once equal() has been asked: how much of
+  /// something our side finds, say, beside the ratio of the times. NaN: the time or rate.
+  virtual double figure() const { return std::numeric_limits<double>::quiet_NaN(); }
 };
 
 /// A figure that is no comparison: a rate of growth, say.
