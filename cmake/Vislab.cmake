@@ -36,14 +36,16 @@ function(vislab_add_library name)
   target_include_directories(vislab_${name} PUBLIC "${PROJECT_SOURCE_DIR}")
 endfunction()
 
-# vislab_add_culler_family(FAMILY CULLERS name... [SOURCES file...] [LIBRARIES library...] [USES_TRUTH])
+# vislab_add_culler_family(FAMILY CULLERS name... [SOURCES file...] [LIBRARIES library...]
+#                          [USES folder...] [USES_TRUTH])
 # Adds the culler FAMILY.name for each name; its file is name.cpp, which defines
 #   vislab::CullerEntry vislab::cullers::FAMILY_name();
 # A family whose only culler bears its own name (none, oracle) is called by that name alone.
-# SOURCES are files that several cullers of the family share. USES_TRUTH: the answers are the judge's
-# (oracles), so that a mended judge makes them stale too.
+# SOURCES are files that several cullers of the family share. USES names folders of algorithms/ whose
+# code the answers depend on too (for peers), so that what is mended there makes them stale. USES_TRUTH:
+# the answers are the judge's (oracles), so that a mended judge does.
 function(vislab_add_culler_family family)
-  cmake_parse_arguments(ARG "USES_TRUTH" "" "CULLERS;SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "USES_TRUTH" "" "CULLERS;SOURCES;LIBRARIES;USES" ${ARGN})
   set(files ${ARG_SOURCES})
   foreach(culler IN LISTS ARG_CULLERS)
     list(APPEND files ${culler}.cpp)
@@ -55,9 +57,11 @@ function(vislab_add_culler_family family)
   endforeach()
   vislab_add_library(${family} SOURCES ${files} PUBLIC vislab_culler PRIVATE ${ARG_LIBRARIES})
   set_property(GLOBAL APPEND PROPERTY VISLAB_CULLER_LIBRARIES vislab_${family})
-  # With its folder, for the hash of its sources.
-  get_filename_component(folder "${CMAKE_CURRENT_SOURCE_DIR}" NAME)
-  set_property(GLOBAL APPEND PROPERTY VISLAB_CULLER_FAMILIES "${family}:${folder}")
+  # With its folders, for the hash of its sources.
+  get_filename_component(folders "${CMAKE_CURRENT_SOURCE_DIR}" NAME)
+  list(APPEND folders ${ARG_USES})
+  list(JOIN folders "+" folders)
+  set_property(GLOBAL APPEND PROPERTY VISLAB_CULLER_FAMILIES "${family}:${folders}")
   if(ARG_USES_TRUTH)
     set_property(GLOBAL APPEND PROPERTY VISLAB_TRUTH_FAMILIES ${family})
   endif()

@@ -1,6 +1,6 @@
 # Script: writes a C++ file with one hash for the sources of every culler family and one for the judge.
-#   cmake -D SOURCE_DIR=… -D FAMILIES=a:folder_a,b:folder_b -D TRUTH_FAMILIES=b -D OUTPUT=file -P WriteSourceHashes.cmake
-# A family's answers depend on its own folder and on the layers below it, those of TRUTH_FAMILIES on the
+#   cmake -D SOURCE_DIR=… -D FAMILIES=a:folder_a,b:folder_b+folder_c -D TRUTH_FAMILIES=b -D OUTPUT=file -P WriteSourceHashes.cmake
+# A family's answers depend on its own folders and on the layers below them, those of TRUTH_FAMILIES on the
 # judge too; the judge's on itself and the same layers. A mended family gets another hash, the others keep
 # theirs.
 
@@ -28,7 +28,11 @@ set(entries "")
 foreach(entry IN LISTS families)
   string(REGEX MATCH "^([^:]+):(.+)$" matched "${entry}")
   set(family "${CMAKE_MATCH_1}")
-  set(folders ${layers} "algorithms/${CMAKE_MATCH_2}")
+  set(folders ${layers})
+  string(REPLACE "+" ";" own_folders "${CMAKE_MATCH_2}")
+  foreach(folder IN LISTS own_folders)
+    list(APPEND folders "algorithms/${folder}")
+  endforeach()
   if(family IN_LIST truth_families)
     list(APPEND folders common/judge)
   endif()
