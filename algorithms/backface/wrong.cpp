@@ -10,7 +10,11 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
+#include "algorithms/backface/facing_culler.h"
+#include "algorithms/backface/flat_clusters.h"
+#include "algorithms/backface/normal_mask.h"
 #include "algorithms/backface/plane_culler.h"
 #include "common/culler/registry.h"
 
@@ -104,6 +108,61 @@ class NormalsAsVectors : public FacingCuller {
   std::size_t mesh_bytes() const override { return 0; }
 };
 
+/// backface.cluster, with the rule for joining clusters as it is printed.
+class PrintedCostSign : public FacingCuller {
+ public:
+  using FacingCuller::FacingCuller;
+  Counters counters() const override { return {{"cluster_tests", cluster_tests_}}; }
+
+ protected:
+  void clear() override { meshes_.clear(); }
+  void add_mesh(MeshId id, const Mesh& mesh, const MeshFrame& frame, const BuildContext&) override {
+    ClusterSettings settings;
+    settings.test_cost = CostTable::typical().cluster_test_over_triangle();
+    settings.join = JoinRule::printed;
+    meshes_.resize(id + 1);
+    meshes_[id].emplace(mesh, frame, settings);
+    back_.resize(std::max(back_.size(), words_of(meshes_[id]->cluster_count())));
+    bits_.resize(std::max(bits_.size(), words_of(mesh.triangles.size())));
+  }
+  std::span<const std::uint64_t> mark_mesh(const ObjectView& view) override {
+    const FlatClusters& clusters = *meshes_[view.mesh];
+    cluster_tests_ += clusters.cluster_count();
+    const auto back = std::span(back_).first(words_of(clusters.cluster_count()));
+    find_back(clusters.blocks(), cluster_eye(view.eye, frame_of(view.mesh), clusters.reach()),
+              back);
+    const auto bits = std::span(bits_).first(words_of(clusters.triangle_count()));
+    std::ranges::fill(bits, 0);
+    clusters.mark(back, bits.data());
+    return bits;
+  }
+  std::size_t mesh_bytes() const override {
+    std::size_t sum = 0;
+    for (const std::optional<FlatClusters>& clusters : meshes_) {
+      sum += clusters ? clusters->bytes() : 0;
+    }
+    return sum;
+  }
+
+ private:
+  std::vector<std::optional<FlatClusters>> meshes_;  // by id; none where nothing is tested
+  std::vector<std::uint64_t> back_;                  // by cluster of one mesh
+  std::vector<std::uint64_t> bits_;                  // by triangle of one mesh
+  std::uint64_t cluster_tests_ = 0;
+};
+
+std::unique_ptr<ICuller> class_centre(CullerInfo info, bool cull_open) {
+  NormalMaskOptions options;
+  options.open = cull_open;
+  options.class_test = ClassTest::centre;
+  return make_normal_mask(std::move(info), options);
+}
+
+template <typename Culler>
+std::unique_ptr<ICuller> make(CullerInfo info, bool cull_open) {
+  return std::make_unique<Culler>(std::move(info), cull_open);
+}
+
 constexpr std::array mistakes{
     Mistake{"view_direction",
             "The sign of the normal times the view direction tells whether a polygon faces the "
@@ -122,9 +181,17 @@ constexpr std::array mistakes{
             "sheared or scaled by different amounts",
             "leaves out front faces of sheared and flattened objects",
             "failures of engines with sheared transforms: filament issue 1520",
-            [](CullerInfo info, bool cull_open) -> std::unique_ptr<ICuller> {
-              return std::make_unique<NormalsAsVectors>(std::move(info), cull_open);
-            }},
+            make<NormalsAsVectors>},
+    Mistake{"class_centre", "A class of normals faces away if the normal in its middle does",
+            "the class holds other normals, which may still face the eye",
+            "leaves out front faces that are nearly edge-on, more of them the coarser the classes",
+            "against Zachmann slides 15-16, which test all four corners of a class", class_centre},
+    Mistake{"printed_cost_sign",
+            "Two clusters are joined if P(C) > (P(A) n_A + P(B) n_B + t_C / r) / (n_A + n_B)",
+            "T(C) < T(A) + T(B) gives - t_C / r: the dearer a test, the sooner clusters should be "
+            "joined, not the later",
+            "leaves out nothing that is seen, but tests more clusters than pay",
+            "Zachmann slide 29", make<PrintedCostSign>},
 };
 
 CullerInfo describe() {
@@ -150,7 +217,9 @@ CullerInfo describe() {
       ParameterSpec::choice("error", names.front(), names, ParameterSpec::Stage::build, meaning),
       open_parameter()};
   info.cost = "O(candidate triangles)";
-  info.limits = "Wrong on purpose: leaves out triangles that are seen from the front.";
+  info.limits =
+      "Wrong on purpose: leaves out triangles that are seen from the front, or costs more than it "
+      "should.";
   info.sources = {"Kowalka 2016 (thesis, HAW Hamburg)", "Zachmann, Computer-Graphik 2, SS 2012",
                   "issues of engines, named with each mistake"};
   return info;
