@@ -58,6 +58,7 @@ std::string limit_text(const Sweep& sweep) {
     metric += " ÷ that of " + markdown_code(sweep.methods[*limit.against].culler);
   }
   if (limit.at_most) return metric + " of at most " + format_number(*limit.at_most);
+  if (limit.at_least) return metric + " of at least " + format_number(*limit.at_least);
   if (limit.at_most_ratio) {
     return metric + " of at most " + format_number(*limit.at_most_ratio) +
            " times that at the first value";
@@ -76,7 +77,7 @@ Fields method_row(const Sweep& sweep, const SweepVerdict& verdict) {
       verdict.was_measured() ? markdown_text(to_string(verdict.guarantee)) : "–";
   row.values["breaks"] = break_text(sweep, verdict);
   row.values["worst"] = figure_text(sweep, verdict, verdict.worst);
-  row.values["least"] = figure_text(sweep, verdict, verdict.least);
+  row.values["best"] = figure_text(sweep, verdict, verdict.best);
   row.values["expected"] = expectation_text(verdict);
   row.values["agreement"] = agreement_text(verdict);
   return row;

@@ -34,8 +34,9 @@ SweepPoint point_of(const CellSummary* cell, const SweepLimit& limit) {
   return point;
 }
 
-double highest_allowed(const SweepLimit& limit, Guarantee guarantee, double first,
-                       std::uint64_t pixels) {
+double worst_allowed(const SweepLimit& limit, Guarantee guarantee, double first,
+                     std::uint64_t pixels) {
+  if (limit.at_least) return *limit.at_least;
   if (limit.at_most) return *limit.at_most;
   if (limit.at_most_ratio) return *limit.at_most_ratio * first;
   if (may_double(limit.metric)) return default_ratio * first;
@@ -96,13 +97,16 @@ SweepVerdict verdict_on(const Sweep& sweep, const SweepMethod& method, const Cel
     }
   }
   const std::vector<SweepPoint>& points = verdict.points;
-  verdict.limit = highest_allowed(sweep.limit, verdict.guarantee, points.front().figure, pixels);
+  const auto is_worse = [&](double figure, double than) {
+    return sweep.limit.at_least ? figure < than : figure > than;
+  };
+  verdict.limit = worst_allowed(sweep.limit, verdict.guarantee, points.front().figure, pixels);
   verdict.is_complete = true;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const SweepPoint& point = points[i];
     const bool measured = point.state == State::measured && !std::isnan(point.figure);
     if (!verdict.break_point) {
-      if (point.state == State::failed || (measured && point.figure > verdict.limit)) {
+      if (point.state == State::failed || (measured && is_worse(point.figure, verdict.limit))) {
         verdict.break_point = i;
       } else if (!measured) {
         verdict.is_complete = false;
@@ -112,8 +116,8 @@ SweepVerdict verdict_on(const Sweep& sweep, const SweepMethod& method, const Cel
       verdict.broken_promise = i;
     }
     if (!measured) continue;
-    if (!verdict.worst || point.figure > points[*verdict.worst].figure) verdict.worst = i;
-    if (!verdict.least || point.figure < points[*verdict.least].figure) verdict.least = i;
+    if (!verdict.worst || is_worse(point.figure, points[*verdict.worst].figure)) verdict.worst = i;
+    if (!verdict.best || is_worse(points[*verdict.best].figure, point.figure)) verdict.best = i;
   }
   if (std::isnan(verdict.limit) && !verdict.break_point) verdict.is_complete = false;
   verdict.agreement = agreement_of(verdict, sweep.dial);

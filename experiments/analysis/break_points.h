@@ -31,12 +31,12 @@ struct SweepVerdict {
   std::string culler;                             // as SweepMethod::culler
   Guarantee guarantee = Guarantee::conservative;  // the weakest of all values
   std::vector<SweepPoint> points;                 // one for each value of the dial
-  double limit = 0.0;  // the highest figure that is not beyond it; NaN if unknown
+  double limit = 0.0;  // the worst figure that is not beyond it; NaN if unknown
   /// The first value of the dial whose figure is beyond the limit, or at which the method failed.
   std::optional<std::size_t> break_point;
   /// Every value up to the break point, or without one every value, was measured or failed.
   bool is_complete = false;
-  std::optional<std::size_t> worst, least;  // values of the dial with the highest, lowest figure
+  std::optional<std::size_t> worst, best;  // values of the dial with the worst, best figure
   std::optional<SweepExpectation> expectation;
   Agreement agreement = Agreement::nothing_expected;
   /// "METHOD has no counter 'x'; it has a, b", or empty.

@@ -145,7 +145,8 @@ std::vector<DialValue> read_dial(const toml::table& table, SweepDial& dial,
 }
 
 SweepLimit read_limit(const toml::table& table, const std::string& file) {
-  refuse_unknown_keys(table, {"metric", "counter", "at_most", "at_most_ratio", "against"},
+  refuse_unknown_keys(table,
+                      {"metric", "counter", "at_most", "at_most_ratio", "at_least", "against"},
                       "[limit]", file);
   SweepLimit limit;
   const auto metric = value_of<std::string>(table, "metric", "a text", file);
@@ -154,23 +155,33 @@ SweepLimit read_limit(const toml::table& table, const std::string& file) {
     throw InputError(place(file, *table.get("counter")) +
                      ": [limit] takes a metric or a counter, not both");
   }
-  if (counter) limit = {*counter, true, {}, {}, {}};
+  limit.at_least = value_of<double>(table, "at_least", "a number", file);
+  if (counter) limit = {*counter, true, {}, {}, {}, limit.at_least};
   if (metric) {
+    const auto better = limit.at_least ? Metric::Better::higher : Metric::Better::lower;
     std::vector<std::string> known;
     for (const Metric& entry : metrics()) {
-      if (entry.better == Metric::Better::lower) known.emplace_back(entry.name);
+      if (entry.better == better) known.emplace_back(entry.name);
     }
     if (std::ranges::find(known, *metric) == known.end()) {
+      const std::string kind = limit.at_least
+                                   ? "metric that is better when higher, as at_least is for,"
+                                   : "metric that is better when lower (others take at_least)";
       throw InputError(place(file, *table.get("metric")) + ": " +
-                       unknown_name("metric that is better when lower", *metric, known).what());
+                       unknown_name(kind, *metric, known).what());
     }
     limit.metric = *metric;
   }
+  if (limit.at_least && !metric) {
+    throw InputError(place(file, *table.get("at_least")) +
+                     ": at_least needs a metric that is better when higher");
+  }
   limit.at_most = value_of<double>(table, "at_most", "a number", file);
   limit.at_most_ratio = value_of<double>(table, "at_most_ratio", "a number", file);
-  if (limit.at_most && limit.at_most_ratio) {
-    throw InputError(place(file, *table.get("at_most")) +
-                     ": [limit] takes at_most or at_most_ratio, not both");
+  if (limit.at_most.has_value() + limit.at_most_ratio.has_value() + limit.at_least.has_value() >
+      1) {
+    throw InputError(place(file, *table.get(limit.at_most ? "at_most" : "at_most_ratio")) +
+                     ": [limit] takes one of at_most, at_most_ratio and at_least");
   }
   if (limit.is_counter && !limit.at_most && !limit.at_most_ratio) {
     throw InputError(place(file, *table.get("counter")) +

@@ -14,10 +14,11 @@
 //   [scene]                        what a file in data/scenes would say
 //   [path]                         what a file in data/paths would say; left out: the scene's own
 //   [limit]                        optional; the break point is the first value beyond it
-//   metric = "over"                of `vislab list metrics`, lower being better (default: false_px)
+//   metric = "over"                of `vislab list metrics` (default: false_px)
 //   counter = "plane_tests"        instead of a metric: a counter of the methods, a frame
 //   at_most = 0.5                  or
-//   at_most_ratio = 2.0            times the figure at the dial's first value
+//   at_most_ratio = 2.0            times the figure at the dial's first value, or
+//   at_least = 0.5                 for metrics that are better when higher, and only for them
 //   against = "frustum.flat"       an entry of `cullers`: figures are shares of its figure at the
 //                                  same value (1 = as much); needs at_most
 //   [[expect]]
@@ -59,6 +60,7 @@ struct SweepLimit {
   bool is_counter = false;
   std::optional<double> at_most, at_most_ratio;  // at most one of them; none: by the metric
   std::optional<std::size_t> against;  // figures are shares of this method's at the same value
+  std::optional<double> at_least = std::nullopt;  // the metric is better when higher
 };
 
 struct SweepExpectation {

@@ -41,8 +41,8 @@ int atlas(const Lab& lab, const std::filesystem::path& results, bool json) {
   const std::vector<SweepResult> found =
       sweep_results(lab, results, require_present_cells(results, lab.cullers));
   Table table({"sweep", "failure", "dial", "unit", "culler", "guarantee", "metric", "limit",
-               "breaks_at", "worst", "worst_at", "least", "least_at", "broken_promise_at",
-               "expected", "verdict", "note"});
+               "breaks_at", "worst", "worst_at", "best", "best_at", "broken_promise_at", "expected",
+               "verdict", "note"});
   std::string not_run;
   bool any = false;
   bool alarming = false;
@@ -59,7 +59,7 @@ int atlas(const Lab& lab, const std::filesystem::path& results, bool json) {
                  verdict.was_measured() ? std::string(to_string(verdict.guarantee)) : "",
                  sweep.figure_name(), verdict.limit, at(sweep, verdict.break_point),
                  figure(verdict, verdict.worst), at(sweep, verdict.worst),
-                 figure(verdict, verdict.least), at(sweep, verdict.least),
+                 figure(verdict, verdict.best), at(sweep, verdict.best),
                  at(sweep, verdict.broken_promise), expected_of(verdict),
                  to_string(verdict.agreement), note_of(verdict)});
     }

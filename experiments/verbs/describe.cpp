@@ -105,6 +105,7 @@ void describe_sweep(const Lab& lab, const std::string& name, bool json) {
   facts.add("values", joined(sweep.dial.texts, ", "));
   facts.add(sweep.limit.is_counter ? "counter" : "metric", sweep.limit.metric);
   if (sweep.limit.at_most) facts.add("at_most", *sweep.limit.at_most);
+  if (sweep.limit.at_least) facts.add("at_least", *sweep.limit.at_least);
   if (sweep.limit.against) facts.add("against", sweep.methods[*sweep.limit.against].culler);
   if (sweep.limit.at_most_ratio) facts.add("at_most_ratio", *sweep.limit.at_most_ratio);
   for (const SweepMethod& method : sweep.methods) {

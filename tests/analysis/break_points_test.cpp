@@ -62,7 +62,7 @@ TEST(BreakPoint, IsTheFirstValueBeyondTheLimit) {
   const SweepVerdict verdict = verdict_of(one_method(), cells);
   EXPECT_EQ(verdict.break_point, 4U);
   EXPECT_EQ(verdict.worst, 4U);
-  EXPECT_EQ(verdict.least, 0U);
+  EXPECT_EQ(verdict.best, 0U);
   EXPECT_TRUE(verdict.is_complete);
   EXPECT_FALSE(verdict.broken_promise) << "nothing was promised";
 }
@@ -113,6 +113,17 @@ TEST(BreakPoint, OverMayDouble) {
   EXPECT_EQ(verdict_of(one_method({"over", false, {}, {}, {}}), cells).break_point, 5U);
   EXPECT_EQ(verdict_of(one_method({"over", false, 2.5, {}, {}}), cells).break_point, std::nullopt);
   EXPECT_EQ(verdict_of(one_method({"over", false, {}, 1.5, {}}), cells).break_point, 1U);
+}
+
+TEST(BreakPoint, IsTheFirstValueBelowTheLimitWhereMoreIsBetter) {
+  const auto cells = cells_with(Guarantee::conservative, [](std::size_t i, CellSummary& cell) {
+    cell.recall = 0.9 - 0.1 * static_cast<double>(i);
+  });
+  const SweepVerdict verdict = verdict_of(one_method({"recall", false, {}, {}, {}, 0.55}), cells);
+  EXPECT_EQ(verdict.break_point, 4U);
+  EXPECT_EQ(verdict.worst, 7U);
+  EXPECT_EQ(verdict.best, 0U);
+  EXPECT_EQ(verdict.limit, 0.55);
 }
 
 TEST(BreakPoint, CountersAreLookedUpByTheirName) {

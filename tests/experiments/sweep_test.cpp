@@ -138,9 +138,14 @@ TEST_F(SweepFileTest, ErrorsAreOneLineThatNamesFilePlaceAndWhatWouldBeRight) {
   expect("description = \"d\"\nfailure = \"F\"\ncullers = [\"frustum.octree[depth=${dial}]\"]\n" +
              dial + scene,
          {"test.toml:3", "depth"});
-  expect(good + "[limit]\nmetric = \"recall\"\n", {"recall", "false_px"});
+  expect(good + "[limit]\nmetric = \"recall\"\n", {"recall", "false_px", "at_least"});
+  expect(good + "[limit]\nmetric = \"over\"\nat_least = 1\n", {"over", "recall", "higher"});
+  expect(good + "[limit]\nat_least = 1\n", {"test.toml", "at_least", "metric"});
+  expect(good + "[limit]\ncounter = \"plane_tests\"\nat_least = 1\n", {"at_least", "metric"});
+  EXPECT_EQ(load(good + "[limit]\nmetric = \"recall\"\nat_least = 0.5\n").limit.at_least, 0.5);
   expect(good + "[limit]\nmetric = \"over\"\ncounter = \"plane_tests\"\n", {"not both"});
-  expect(good + "[limit]\nat_most = 1\nat_most_ratio = 2\n", {"not both"});
+  expect(good + "[limit]\nat_most = 1\nat_most_ratio = 2\n", {"one of at_most"});
+  expect(good + "[limit]\nmetric = \"recall\"\nat_least = 1\nat_most = 2\n", {"one of at_most"});
   expect(good + "[limit]\ncounter = \"plane_tests\"\n", {"at_most"});
   const std::string why = "source = \"s\"\nbecause = \"b\"\n";
   expect(good + "[[expect]]\nculler = \"frustum.*\"\nbreaks = \"soon\"\n" + why, {"never"});
