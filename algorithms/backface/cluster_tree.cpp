@@ -7,10 +7,9 @@
 //   slides holds for a common origin only).
 // Guarantee: conservative, as backface.cluster; the answers are never fewer than those of its
 //   clusters.
-// Cost: O(nodes that are seen from both sides), 16 children at a time, and O(runs of culled
-//   triangles): nodes whose triangles follow each other in the mesh better than those of their
-//   clusters have runs of their own. Memory: about 57 bytes a cluster and 4 a run. Build: O(n log
-//   n).
+// Cost: O(nodes that are seen from both sides), 16 children at a time, and O(marks of culled
+//   triangles): runs of consecutive triangles for clusters, words of 64 where nodes hold several
+//   triangles of each. Memory: about 64 bytes a cluster, 4 a run and 12 a word. Build: O(n log n).
 // Limits: as backface.cluster. On rough surfaces clusters are scattered over the mesh, and marking
 //   their triangles takes longer than testing them.
 // Sources: Zachmann slide 26 (hierarchy, front-face test), 27-29 (cost model: how far down clusters

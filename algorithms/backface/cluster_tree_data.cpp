@@ -34,6 +34,7 @@ class ClusterTree::Builder {
     tree_.clusters_.shrink_to_fit();
     tree_.marks_.shrink_to_fit();
     tree_.runs_.shrink();
+    tree_.words_.shrink();
   }
 
  private:
@@ -87,7 +88,7 @@ class ClusterTree::Builder {
       const std::uint32_t child = node * width + lane;
       const Clusters below = clusters_in(part);
       tree_.clusters_[child] = below;
-      tree_.marks_[child] = {first_run_[below.first], first_run_[below.first + below.count]};
+      tree_.marks_[child] = {first_run_[below.first], first_run_[below.first + below.count], false};
       Aabb box;
       if (part.is_cluster()) {
         box = box_of(mesh_, frame_, clusters_.of(below.first));
@@ -120,8 +121,8 @@ class ClusterTree::Builder {
     return {first, at(part.end) - first};
   }
 
-  /// Triangles of neighbouring clusters often follow each other in the mesh: gives a part runs of
-  /// its own if they are much fewer than those of its clusters.
+  /// Many triangles of a part may share words: then it is marked by those and not by the runs of
+  /// its clusters.
   void shorten(std::uint32_t child, const Part& part) {
     const std::span<const std::uint32_t> triangles =
         std::span(clusters_.order).subspan(part.first, part.end - part.first);
@@ -141,13 +142,11 @@ class ClusterTree::Builder {
     } else {
       std::ranges::sort(ascending_);
     }
-    own_runs_.clear();
-    own_runs_.append(ascending_);
     Marks& marks = tree_.marks_[child];
-    if (own_runs_.size() > (marks.end - marks.first) / 2) return;
-    marks.first = tree_.runs_.size();
-    tree_.runs_.append(ascending_);
-    marks.end = tree_.runs_.size();
+    if (WordList::words_for(ascending_) > (marks.end - marks.first) / 2) return;
+    marks = {tree_.words_.size(), 0, true};
+    tree_.words_.append(ascending_);
+    marks.end = tree_.words_.size();
   }
 
   ClusterTree& tree_;
@@ -160,7 +159,6 @@ class ClusterTree::Builder {
   std::vector<std::uint32_t> first_run_;  // by cluster, and the end
   std::vector<std::uint64_t> bits_;       // by triangle
   std::vector<std::uint32_t> ascending_;
-  RunList own_runs_;
 };
 
 ClusterTree::ClusterTree(const Mesh& mesh, const MeshFrame& frame,
@@ -173,7 +171,7 @@ ClusterTree::ClusterTree(const Mesh& mesh, const MeshFrame& frame,
 
 std::size_t ClusterTree::bytes() const {
   return nodes_.capacity() * sizeof(ClusterTreeNode) + clusters_.capacity() * sizeof(Clusters) +
-         marks_.capacity() * sizeof(Marks) + runs_.bytes();
+         marks_.capacity() * sizeof(Marks) + runs_.bytes() + words_.bytes();
 }
 
 }  // namespace vislab::backface_culling

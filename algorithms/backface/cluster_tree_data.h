@@ -30,7 +30,12 @@ class ClusterTree {
   Clusters clusters_below(std::uint32_t child) const { return clusters_[child]; }
   /// Sets the bits of all triangles below a child.
   void mark(std::uint32_t child, std::uint64_t* bits) const {
-    runs_.mark(marks_[child].first, marks_[child].end, bits);
+    const Marks& marks = marks_[child];
+    if (marks.as_words) {
+      words_.mark(marks.first, marks.end, bits);
+    } else {
+      runs_.mark(marks.first, marks.end, bits);
+    }
   }
   std::size_t bytes() const;
 
@@ -38,13 +43,15 @@ class ClusterTree {
   class Builder;
 
   struct Marks {
-    std::uint32_t first = 0, end = 0;  // in runs_
+    std::uint32_t first = 0, end = 0;  // in runs_, or in words_
+    bool as_words = false;
   };
 
   std::vector<ClusterTreeNode> nodes_;
   std::vector<Clusters> clusters_;  // by child
   std::vector<Marks> marks_;        // by child
-  RunList runs_;                    // of all clusters, one after the other, then of some nodes
+  RunList runs_;                    // of all clusters, one after the other
+  WordList words_;                  // of the nodes for which that is shorter
   double reach_ = 0.0;
   std::uint32_t cluster_count_ = 0;
 };

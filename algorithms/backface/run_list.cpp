@@ -29,4 +29,22 @@ void RunList::append(std::span<const std::uint32_t> triangles) {
   }
 }
 
+void WordList::append(std::span<const std::uint32_t> triangles) {
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (i == 0 || triangles[i] / 64 != triangles[i - 1] / 64) {
+      words_.push_back(triangles[i] / 64);
+      masks_.push_back(0);
+    }
+    masks_.back() |= std::uint64_t{1} << (triangles[i] % 64);
+  }
+}
+
+std::uint32_t WordList::words_for(std::span<const std::uint32_t> triangles) {
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    count += i == 0 || triangles[i] / 64 != triangles[i - 1] / 64 ? 1 : 0;
+  }
+  return count;
+}
+
 }  // namespace vislab::backface_culling

@@ -33,11 +33,38 @@ class RunList {
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(runs_.size()); }
   void shrink() { runs_.shrink_to_fit(); }
-  void clear() { runs_.clear(); }
   std::size_t bytes() const { return runs_.capacity() * sizeof(std::uint32_t); }
 
  private:
   std::vector<std::uint32_t> runs_;  // first triangle * longest + count - 1
+};
+
+/// Words of 64 triangles and which of them are meant, 12 bytes each: shorter than runs where many
+/// triangles are scattered.
+class WordList {
+ public:
+  /// Appends ascending triangles.
+  void append(std::span<const std::uint32_t> triangles);
+  /// How many words these would be.
+  static std::uint32_t words_for(std::span<const std::uint32_t> triangles);
+
+  /// Sets the bits of the triangles of words [first, end).
+  void mark(std::uint32_t first, std::uint32_t end, std::uint64_t* bits) const {
+    for (std::uint32_t i = first; i < end; ++i) bits[words_[i]] |= masks_[i];
+  }
+
+  std::uint32_t size() const { return static_cast<std::uint32_t>(words_.size()); }
+  void shrink() {
+    words_.shrink_to_fit();
+    masks_.shrink_to_fit();
+  }
+  std::size_t bytes() const {
+    return words_.capacity() * sizeof(std::uint32_t) + masks_.capacity() * sizeof(std::uint64_t);
+  }
+
+ private:
+  std::vector<std::uint32_t> words_;
+  std::vector<std::uint64_t> masks_;
 };
 
 }  // namespace vislab::backface_culling
