@@ -23,7 +23,7 @@ namespace {
 
 using namespace backface_culling;
 
-using Make = std::unique_ptr<ICuller> (*)(CullerInfo info, bool cull_open);
+using Make = std::unique_ptr<ICuller> (*)(CullerInfo info, const ParameterValues& values);
 
 struct Mistake {
   const char* name;
@@ -53,9 +53,9 @@ class WrongEye : public PlaneCuller {
   FindEye find_;
 };
 
-std::unique_ptr<ICuller> view_direction(CullerInfo info, bool cull_open) {
+std::unique_ptr<ICuller> view_direction(CullerInfo info, const ParameterValues& values) {
   return std::make_unique<WrongEye>(
-      std::move(info), cull_open,
+      std::move(info), culls_open(values),
       [](const ObjectView& view, const MeshFrame& frame,
          const PlaneArrays& planes) -> std::optional<PlaneTest> {
         Camera camera = view.frame.camera;
@@ -66,8 +66,8 @@ std::unique_ptr<ICuller> view_direction(CullerInfo info, bool cull_open) {
       });
 }
 
-std::unique_ptr<ICuller> winding_ignored(CullerInfo info, bool cull_open) {
-  return std::make_unique<WrongEye>(std::move(info), cull_open,
+std::unique_ptr<ICuller> winding_ignored(CullerInfo info, const ParameterValues& values) {
+  return std::make_unique<WrongEye>(std::move(info), culls_open(values),
                                     [](const ObjectView& view, const MeshFrame& frame,
                                        const PlaneArrays& planes) -> std::optional<PlaneTest> {
                                       PlaneTest test = plane_test(view.eye, frame, planes);
@@ -85,7 +85,8 @@ std::unique_ptr<ICuller> winding_ignored(CullerInfo info, bool cull_open) {
 /// Normals taken to the world by the object's matrix itself.
 class NormalsAsVectors : public FacingCuller {
  public:
-  using FacingCuller::FacingCuller;
+  NormalsAsVectors(CullerInfo info, const ParameterValues& values)
+      : FacingCuller(std::move(info), culls_open(values)) {}
 
  protected:
   void clear() override {}
@@ -111,14 +112,15 @@ class NormalsAsVectors : public FacingCuller {
 /// backface.cluster, with the rule for joining clusters as it is printed.
 class PrintedCostSign : public FacingCuller {
  public:
-  using FacingCuller::FacingCuller;
+  PrintedCostSign(CullerInfo info, const ParameterValues& values)
+      : FacingCuller(std::move(info), culls_open(values)), test_cost_(values.real("test_cost")) {}
   Counters counters() const override { return {{"cluster_tests", cluster_tests_}}; }
 
  protected:
   void clear() override { meshes_.clear(); }
   void add_mesh(MeshId id, const Mesh& mesh, const MeshFrame& frame, const BuildContext&) override {
     ClusterSettings settings;
-    settings.test_cost = CostTable::typical().cluster_test_over_triangle();
+    settings.test_cost = test_cost_;
     settings.join = JoinRule::printed;
     meshes_.resize(id + 1);
     meshes_[id].emplace(mesh, frame, settings);
@@ -145,22 +147,23 @@ class PrintedCostSign : public FacingCuller {
   }
 
  private:
+  double test_cost_;
   std::vector<std::optional<FlatClusters>> meshes_;  // by id; none where nothing is tested
   std::vector<std::uint64_t> back_;                  // by cluster of one mesh
   std::vector<std::uint64_t> bits_;                  // by triangle of one mesh
   std::uint64_t cluster_tests_ = 0;
 };
 
-std::unique_ptr<ICuller> class_centre(CullerInfo info, bool cull_open) {
+std::unique_ptr<ICuller> class_centre(CullerInfo info, const ParameterValues& values) {
   NormalMaskOptions options;
-  options.open = cull_open;
+  options.open = culls_open(values);
   options.class_test = ClassTest::centre;
   return make_normal_mask(std::move(info), options);
 }
 
 template <typename Culler>
-std::unique_ptr<ICuller> make(CullerInfo info, bool cull_open) {
-  return std::make_unique<Culler>(std::move(info), cull_open);
+std::unique_ptr<ICuller> make(CullerInfo info, const ParameterValues& values) {
+  return std::make_unique<Culler>(std::move(info), values);
 }
 
 constexpr std::array mistakes{
@@ -190,7 +193,7 @@ constexpr std::array mistakes{
             "Two clusters are joined if P(C) > (P(A) n_A + P(B) n_B + t_C / r) / (n_A + n_B)",
             "T(C) < T(A) + T(B) gives - t_C / r: the dearer a test, the sooner clusters should be "
             "joined, not the later",
-            "leaves out nothing that is seen, but tests more clusters than pay",
+            "leaves out nothing that is seen, but the dearer tests are the more of them it makes",
             "Zachmann slide 29", make<PrintedCostSign>},
 };
 
@@ -215,6 +218,9 @@ CullerInfo describe() {
   }
   info.parameters = {
       ParameterSpec::choice("error", names.front(), names, ParameterSpec::Stage::build, meaning),
+      ParameterSpec::real("test_cost", 1.0, 0.0, 1000.0, "triangles", ParameterSpec::Stage::build,
+                          "printed_cost_sign: t_C / r, the time to test a cluster in that of "
+                          "drawing a triangle; the others do without"),
       open_parameter()};
   info.cost = "O(candidate triangles)";
   info.limits =
@@ -241,7 +247,7 @@ CullerEntry backface_wrong() {
   return {describe(), [](const ParameterValues& values) -> std::unique_ptr<ICuller> {
             for (const Mistake& mistake : mistakes) {
               if (values.choice("error") == mistake.name) {
-                return mistake.make(describe(mistake), culls_open(values));
+                return mistake.make(describe(mistake), values);
               }
             }
             throw std::logic_error("an allowed mistake is not in the table");

@@ -1,13 +1,18 @@
 #include <gtest/gtest.h>
 
+#include <array>
+#include <iostream>
 #include <set>
 
 #include "algorithms/backface/back_bits.h"
+#include "algorithms/backface/flat_clusters.h"
 #include "algorithms/backface/plane_kernel.h"
 #include "common/geometry/random.h"
+#include "common/scene/generators/generators.h"
 #include "common/simd/simd_target.h"
 #include "experiments/contract/small_scenes.h"
 #include "tests/algorithms/run_culler.h"
+#include "tests/geometry/exact_facing.h"
 
 namespace vislab {
 namespace {
@@ -252,6 +257,116 @@ TEST_P(BackfaceForms, AreNeverWrongNextToThePlaneOfATriangle) {
 
 INSTANTIATE_TEST_SUITE_P(All, BackfaceForms, testing::Values("hesse", "computed", "stored_normal"),
                          [](const auto& form) { return std::string(form.param); });
+
+/// A sphere with bumps, and eyes around it.
+class BackfaceOfABumpySphere : public testing::Test {
+ protected:
+  static Scene sphere(Bumps bumps) {
+    BumpySphereParameters parameters;
+    parameters.subdivisions = 40;
+    parameters.bumps = bumps;
+    Scene scene = make_bumpy_sphere(parameters);
+    scene.finish();
+    return scene;
+  }
+  static std::vector<Camera> around() {
+    std::vector<Camera> cameras;
+    for (int i = 0; i < 12; ++i) {
+      const double angle = degrees(30.0 * i);
+      cameras.push_back(camera_at(
+          3.0 * glm::dvec3(std::cos(angle), std::sin(2.0 * angle), std::sin(angle)), {0, 0, 0}));
+    }
+    return cameras;
+  }
+  static test::FacingCounts judged(CullerRun& run, const Scene& scene) {
+    test::FacingCounts sum;
+    for (const Camera& camera : around()) {
+      const Frame frame = run.frame(camera);
+      run.update(camera, {});
+      sum +=
+          test::count_facings(scene, frame, test::exact_facings(scene, frame), run.emitted(camera));
+    }
+    return sum;
+  }
+};
+
+TEST_F(BackfaceOfABumpySphere, IsFoundByAllExactFormsNearlyWhole) {
+  const Scene scene = sphere(Bumps::high);
+  for (const char* spec : {"backface.polygon", "backface.polygon[form=computed]",
+                           "backface.polygon[form=stored_normal]", "backface.projected_plane"}) {
+    CullerRun run(spec, scene);
+    const test::FacingCounts counts = judged(run, scene);
+    EXPECT_TRUE(counts.all_right()) << spec;
+    EXPECT_GT(counts.recall(), 0.9999) << spec;
+  }
+}
+
+TEST_F(BackfaceOfABumpySphere, LosesFrontFacesByTheNormalsOfVerticesMostlyInHollows) {
+  // Of what is left out, by bumps: none, low, high.
+  constexpr std::array<double, 3> least{0.0, 0.001, 0.02};
+  constexpr std::array<double, 3> most{0.001, 0.01, 0.1};
+  for (const Bumps bumps : {Bumps::none, Bumps::low, Bumps::high}) {
+    const Scene scene = sphere(bumps);
+    CullerRun run("backface.polygon[form=vertex_normals]", scene);
+    EXPECT_EQ(run.culler().info().guarantee, Guarantee::approximate);
+    const test::FacingCounts counts = judged(run, scene);
+    const double wrong = static_cast<double>(counts.front_left_out) /
+                         static_cast<double>(counts.front_left_out + counts.back_left_out);
+    const auto kind = static_cast<std::size_t>(bumps);
+    std::cout << "bumps " << kind << ": of what is left out " << 100.0 * wrong
+              << " % are front faces; of the back faces " << 100.0 * counts.recall()
+              << " % are left out\n";
+    EXPECT_GT(wrong, least[kind]);
+    EXPECT_LT(wrong, most[kind]);
+    EXPECT_GT(counts.recall(), 0.8);
+  }
+}
+
+TEST_F(BackfaceOfABumpySphere, CostsMoreTheDearerATestIsIfTheCostModelHasThePrintedSign) {
+  using namespace backface_culling;
+  const Scene scene = sphere(Bumps::high);
+  const Mesh& mesh = scene.meshes[0];
+  const MeshFrame frame(mesh);
+  struct Work {
+    std::size_t clusters = 0;
+    double cost = 0.0;  // of all views, in triangles drawn
+  };
+  const auto work = [&](double test_cost, JoinRule rule) {
+    ClusterSettings settings;
+    settings.test_cost = test_cost;
+    settings.join = rule;
+    const FlatClusters clusters(mesh, frame, settings);
+    Work sum{clusters.cluster_count(), 0.0};
+    std::vector<std::uint64_t> back(words_of(sum.clusters));
+    for (const Camera& camera : around()) {
+      const auto eye = eye_in_mesh(camera, scene.objects[0].transform, frame);
+      find_back(clusters.blocks(), cluster_eye(*eye, frame, clusters.reach()), back);
+      std::vector<std::uint64_t> bits(words_of(mesh.triangles.size()), 0);
+      clusters.mark(back, bits.data());
+      sum.cost += static_cast<double>(sum.clusters) * test_cost +
+                  static_cast<double>(mesh.triangles.size());
+      for (const std::uint64_t word : bits) sum.cost -= std::popcount(word);
+    }
+    return sum;
+  };
+  for (const double test_cost : {0.02, 1.0, 4.0, 16.0}) {
+    const Work derived = work(test_cost, JoinRule::derived);
+    const Work printed = work(test_cost, JoinRule::printed);
+    std::cout << "t_C / r = " << test_cost << ": " << derived.clusters << " clusters, printed sign "
+              << printed.clusters << "; cost " << derived.cost << ", printed sign " << printed.cost
+              << "\n";
+    CullerRun run(
+        "backface.wrong[error=printed_cost_sign,test_cost=" + std::to_string(test_cost) + "]",
+        scene);
+    EXPECT_TRUE(judged(run, scene).all_right());
+    EXPECT_EQ(run.counter("cluster_tests"), printed.clusters * around().size());
+    EXPECT_LE(derived.cost, printed.cost);
+    if (test_cost >= 1.0) {
+      EXPECT_LT(derived.clusters, printed.clusters);
+      EXPECT_LT(derived.cost, 0.99 * printed.cost);
+    }
+  }
+}
 
 }  // namespace
 }  // namespace vislab
