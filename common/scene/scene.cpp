@@ -87,7 +87,7 @@ void finish_mesh(Mesh& mesh, std::size_t index, SceneReport& report) {
     throw InputError(where + " is too large for float coordinates");
   }
   mesh.closed = is_closed_outward(mesh);
-  mesh.solid = mesh.closed && is_free_of_self_intersection(mesh);
+  mesh.solid = mesh.closed && is_solid(mesh);
   if (!mesh.closed) ++report.open_meshes;
   if (mesh.closed && !mesh.solid) ++report.self_intersecting_meshes;
 }

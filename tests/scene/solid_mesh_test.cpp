@@ -72,10 +72,30 @@ TEST(SolidMesh, OpenAndInvertedMeshesAreNotSolid) {
   Mesh open = cube_mesh();
   open.triangles.pop_back();
   EXPECT_FALSE(solid(open));
-  Mesh inverted = cube_mesh();
-  for (glm::uvec3& triangle : inverted.triangles) std::swap(triangle.x, triangle.y);
-  EXPECT_FALSE(solid(inverted));
-  EXPECT_TRUE(is_free_of_self_intersection(inverted));  // it is not outward, that is all
+  EXPECT_FALSE(solid(inverted(cube_mesh())));
+}
+
+TEST(SolidMesh, SaysWhatIsClosedAndOutwardAsExactArithmeticDoes) {
+  const Mesh ball = sphere(8);
+  Mesh open = ball;
+  open.triangles.pop_back();
+  Mesh one_turned = two_cubes({5.0F, 0.0F, 0.0F});
+  append(one_turned, inverted(ball), {-5.0F, 0.0F, 0.0F});
+  Mesh hollow = ball;
+  append(hollow, inverted(ball), glm::vec3(0.0F), 0.5F);
+  Mesh thin;
+  append(thin, ball, glm::vec3(0.0F));
+  for (glm::vec3& p : thin.positions) p.y *= 1e-20F;
+  const std::pair<const Mesh*, bool> expected[] = {
+      {&ball, true}, {&open, false}, {&one_turned, false}, {&hollow, false}, {&thin, true}};
+  for (const auto& [mesh, is_expected] : expected) {
+    EXPECT_EQ(is_closed_outward(*mesh), is_expected);
+    EXPECT_EQ(is_solid(*mesh), is_expected);
+  }
+  EXPECT_FALSE(is_solid(inverted(thin)));
+  Mesh nothing = ball;
+  nothing.triangles = {{0, 0, 1}};
+  EXPECT_FALSE(is_solid(nothing));
 }
 
 TEST(SolidMesh, SeparateAndNestedCubesAreSolid) {
@@ -152,9 +172,9 @@ TEST(SolidMesh, IsTrueAtAnySizeAndFarFromTheOrigin) {
   for (const float scale : {1e-30F, 1e-6F, 1e6F, 1e30F}) {
     Mesh mesh;
     append(mesh, sphere(6), glm::vec3(0.0F), scale);
-    EXPECT_TRUE(is_free_of_self_intersection(mesh)) << scale;
+    EXPECT_TRUE(is_solid(mesh)) << scale;
     append(mesh, cube_mesh(), glm::vec3(0.0F), 0.9F * scale);
-    EXPECT_FALSE(is_free_of_self_intersection(mesh)) << scale;
+    EXPECT_FALSE(is_solid(mesh)) << scale;
   }
   Mesh mesh;
   append(mesh, cube_mesh(), glm::vec3(65536.0F));
