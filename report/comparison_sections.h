@@ -22,4 +22,9 @@ std::vector<Fields> control_fields(const ReportInput& input);
 std::vector<Fields> published_fields(const std::vector<PublishedFigures>& published,
                                      const std::vector<BlockSummary>& blocks);
 
+/// One entry for each machine and figure of the table of costs, for templates/measurement.md.
+std::vector<Fields> cost_fields(const std::vector<BlockSummary>& blocks);
+/// Timed cells without such a table.
+std::size_t count_uncalibrated(const std::vector<BlockSummary>& blocks);
+
 }  // namespace vislab

@@ -332,6 +332,11 @@ Fields report_fields(const ReportInput& input, const std::string& verdict_templa
   fields.lists["mixed_build"] = mixed_build_fields(input.blocks);
   fields.flag("is_mixed", !fields.lists["mixed_build"].empty());
   fields.lists["context"] = context_fields(input.blocks);
+  fields.lists["costs"] = cost_fields(input.blocks);
+  fields.flag("has_costs", !fields.lists["costs"].empty());
+  const std::size_t uncalibrated = count_uncalibrated(input.blocks);
+  fields.flag("has_uncalibrated", uncalibrated > 0);
+  fields.values["uncalibrated"] = format_count(uncalibrated);
   return fields;
 }
 

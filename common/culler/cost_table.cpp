@@ -6,9 +6,9 @@ namespace vislab {
 
 CostTable CostTable::typical() {
   CostTable table;
-  table.triangle = Cost::exactly(160.0);
-  table.draw = Cost::exactly(1500.0);
-  table.piece = Cost::exactly(40.0);
+  table.triangle = Cost::exactly(250.0);
+  table.draw = Cost::exactly(260.0);
+  table.piece = Cost::exactly(200.0);
   table.cluster_test = Cost::exactly(5.0);
   return table;
 }

@@ -38,7 +38,8 @@ std::span<const Metric> metrics() {
       Metric{"draw_ms", "ms", lower, "time inside calls of the device"},
       Metric{"frame_ms", "ms", lower, "wall time from update until everything is drawn"},
       Metric{"modelled_frame_ms", "ms", lower,
-             "test cost + submitted triangles * calibrated cost; not wall time"},
+             "test cost + submitted triangles * calibrated cost; for methods that use the device "
+             "frame time / none's * that of none; not wall time"},
       Metric{"bytes", "bytes", lower, "memory of what build made"},
       Metric{"submitted_triangles", "count", lower, "triangles handed to the device"},
       Metric{"efficiency", "ratio", higher,

@@ -5,6 +5,8 @@
 #include <set>
 #include <tuple>
 
+#include "experiments/analysis/modelled_time.h"
+
 namespace vislab {
 namespace {
 
@@ -141,6 +143,11 @@ void summarise_accuracy(const CellVerdicts& verdicts, Culls culls, CellSummary& 
   summary.kept_objects = ratio(kept_objects, verdicts.frames.size());
 }
 
+std::string machine_of(const ResultCell& cell) {
+  const auto found = cell.context.find("machine");
+  return found == cell.context.end() ? std::string() : found->second;
+}
+
 CellSummary summarise_cell(const JudgedCell& judged) {
   const ResultCell& cell = judged.cell;
   CellSummary summary;
@@ -158,19 +165,22 @@ CellSummary summarise_cell(const JudgedCell& judged) {
   summary.granularity = cell.granularity;
   summary.culls = cell.culls;
   summary.rounds = static_cast<int>(cell.rounds.size());
-  if (const auto found = cell.context.find("machine"); found != cell.context.end()) {
-    summary.machine = found->second;
-  }
+  summary.machine = machine_of(cell);
+  summary.calibrated = cell.costs.has_value();
   summary.build_ms = cell.build_ms;
   summary.bytes = cell.bytes;
 
-  std::uint64_t submitted = 0;
+  std::uint64_t submitted = 0, draws = 0, pieces = 0;
   std::map<std::string, std::uint64_t> counters;
   for (const CellFrame& frame : cell.frames) {
     submitted += frame.submitted_triangles;
+    draws += frame.draws;
+    pieces += frame.pieces;
     for (const auto& [name, value] : frame.counters) counters[name] += value;
   }
   summary.submitted_triangles = ratio(submitted, cell.frames.size());
+  summary.draws = ratio(draws, cell.frames.size());
+  summary.pieces = ratio(pieces, cell.frames.size());
   for (const auto& [name, value] : counters) {
     summary.counters[name] = ratio(value, cell.frames.size());
   }
@@ -217,26 +227,14 @@ auto cell_order(const CellSummary& cell) {
   return std::tuple(group, group == 0 ? std::string() : cell.culler, cell.replicate, cell.id);
 }
 
-/// Test cost + submitted triangles × what a triangle costs when everything is drawn.
-void model_frame_times(BlockSummary& block) {
-  const auto none = std::ranges::find_if(block.cells, [](const CellSummary& cell) {
-    return cell.canonical == none_chain && cell.replicate == 0;
-  });
-  const double triangle_ms = none == block.cells.end() || !(none->submitted_triangles > 0.0)
-                                 ? nan
-                                 : none->draw_ms.median.value / none->submitted_triangles;
-  for (CellSummary& cell : block.cells) {
-    if (!block.drawn) {
-      cell.modelled_frame_ms = nan;
-      continue;
-    }
-    if (cell.asks_device) {
-      cell.modelled_frame_ms = cell.frame_ms.median.value;
-      continue;
-    }
-    cell.modelled_frame_ms = (cell.update_us.median.value + cell.cull_us.median.value) / 1000.0 +
-                             cell.submitted_triangles * triangle_ms;
+std::map<std::string, CostTable> costs_by_machine(const std::vector<const JudgedCell*>& cells) {
+  std::map<std::string, std::vector<CostTable>> tables;
+  for (const JudgedCell* judged : cells) {
+    if (judged->cell.costs) tables[machine_of(judged->cell)].push_back(*judged->cell.costs);
   }
+  std::map<std::string, CostTable> costs;
+  for (const auto& [machine, list] : tables) costs[machine] = median_table(list);
+  return costs;
 }
 
 /// The facts that not all cells agree on; a cell without the fact does not differ.
@@ -272,6 +270,7 @@ BlockSummary summarise_block(const std::vector<const JudgedCell*>& cells) {
   block.context = first.context;
   block.mixed_context = mixed_context(cells);
   block.noise = Estimate::none();
+  block.costs = costs_by_machine(cells);
   for (const JudgedCell* cell : cells) {
     block.frames = std::max(block.frames, static_cast<int>(cell->cell.frames.size()));
     block.cells.push_back(summarise_cell(*cell));

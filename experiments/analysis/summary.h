@@ -51,16 +51,18 @@ struct CellSummary {
   double flicker = 0.0;  // toggles / changes from one frame to the next: frames - 1
   std::uint64_t pop_px_frames = 0, latency_frames = 0;
   double submitted_triangles = 0.0, visible_triangles = 0.0, kept_objects = 0.0;  // per frame
+  double draws = 0.0, pieces = 0.0;  // per frame, as CellFrame has them
 
   // Times; NaN if the cell was not timed. Where nothing is drawn, frame_ms and draw_ms say nothing
-  // of the method's worth, and what is made of them (modelled_frame_ms, against_none, efficiency)
-  // is NaN.
+  // of the method's worth, and what is made of them (against_none, efficiency) is NaN.
   TimeSummary update_us, cull_us, draw_ms, frame_ms;
   double build_ms = 0.0;
-  /// Test cost + submitted triangles × the cost of one. Methods that ask the device: their
-  /// frame_ms, for their waiting cannot be told from drawing.
+  /// Test cost (update_us + cull_us) + what is submitted at calibrated costs: triangles, draws and
+  /// further pieces of meshes. Methods that use the device: against_none × that of none, for what
+  /// they save or wait for there is not in what they submit. NaN without calibrated costs.
   double modelled_frame_ms = 0.0;
   bool asks_device = false;
+  bool calibrated = false;  // measured with a table of costs beside it; not so in old results
   std::uint64_t bytes = 0;
   /// frame_ms of this cell / frame_ms of none, paired by frame and round; NaN without such pairs.
   Estimate against_none;
@@ -98,6 +100,8 @@ struct BlockSummary {
   /// Facts of the context that differ between cells: all values, by name, ascending.
   std::map<std::string, std::vector<std::string>> mixed_context;
   std::vector<std::string> machines;  // ids of all machines that measured cells here
+  /// By machine: what drawing and testing cost there, the median over its cells' tables.
+  std::map<std::string, CostTable> costs;
 };
 
 /// A cell and what the present judge makes of it (empty: nothing yet).

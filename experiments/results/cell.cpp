@@ -196,11 +196,13 @@ std::optional<ResultCell> parse_cell(const std::string& text, const std::string&
     cell.build_ms = j.at("build_ms");
     cell.bytes = j.at("bytes");
     for (const json& frame : j.at("frames")) {
-      // Draws, pieces and one_sided were not counted before there were costs of them.
       cell.frames.push_back({frame.at("set"), frame.at("truth"), frame.at("submitted_triangles"),
+                             frame.at("counters"),
+                             // Since there are costs of them, and methods that use the device's
+                             // culling.
                              frame.value("draws", std::uint64_t{0}),
                              frame.value("pieces", std::uint64_t{0}),
-                             frame.value("one_sided", std::string()), frame.at("counters")});
+                             frame.value("one_sided", std::string())});
     }
     for (const json& r : j.at("rounds")) {
       cell.rounds.push_back({r.at("session"), r.at("number"), r.at("update_us"), r.at("cull_us"),

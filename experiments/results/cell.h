@@ -47,10 +47,11 @@ struct CellFrame {
   std::string set;    // VisibleSet::hash
   std::string truth;  // truth_key
   std::uint64_t submitted_triangles = 0;
+  std::map<std::string, std::uint64_t> counters;
   std::uint64_t draws = 0;   // runs of emitted ranges of one object
   std::uint64_t pieces = 0;  // contiguous ranges that these are made of
-  std::string one_sided;     // hash of the set of triangles whose backs the device left out; or ""
-  std::map<std::string, std::uint64_t> counters;
+  /// Hash of the set of triangles whose backs the device left out; "" if none.
+  std::string one_sided = {};
 };
 
 struct ResultCell {

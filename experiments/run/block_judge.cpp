@@ -20,7 +20,8 @@ std::vector<ObjectId> objects_of(const std::string& hash, const Scene& scene,
                                  const ResultStore& store) {
   std::vector<ObjectId> objects;
   if (hash.empty()) return objects;
-  for (const VisibleSet::Run& run : store.load_set(hash).runs()) {
+  const VisibleSet set = store.load_set(hash);
+  for (const VisibleSet::Run& run : set.runs()) {
     for (TriangleId triangle = run.first; triangle < run.first + run.count;) {
       objects.push_back(scene.object_of(triangle));
       triangle += scene.triangle_count(objects.back());

@@ -13,6 +13,7 @@
 #include "common/render/osmesa_device.h"
 #include "common/scene/error.h"
 #include "common/simd/simd_target.h"
+#include "experiments/calibration/calibration.h"
 #include "experiments/context/context.h"
 #include "experiments/context/sources.h"
 #include "experiments/run/block_judge.h"
@@ -233,6 +234,7 @@ class BlockRun {
       timed_device_ = std::make_unique<TimedDevice>(*device_);
     }
     context_["device"] = device_ ? device_->description() : "none";
+    const CostTable costs = costs_of_block();
     BuildContext build_context;
     build_context.cullers = &registry_;
     build_context.truth = truth_.get();
@@ -251,10 +253,13 @@ class BlockRun {
         runner.cell.culls = info.culls;
         runner.cell.asks_device = info.needs_device;
         runner.cell.context = context_;
+        // Rounds of one cell are of one build: what was handed to the first is handed to all.
+        if (!runner.cell.costs || runner.cell.rounds.empty()) runner.cell.costs = costs;
         // On record before it starts, so that a failure has a place to be written to. What was
         // there before stays until there is something better.
         if (!store_.load_cell(runner.cell.key.id())) store_.save_cell(runner.cell);
       }
+      build_context.costs = runner.cell.costs ? &*runner.cell.costs : &costs;
       guarded(runner, [&] {
         const auto start = std::chrono::steady_clock::now();
         runner.culler->build(*scene_, build_context);
@@ -264,6 +269,15 @@ class BlockRun {
         runner.cell.bytes = runner.culler->bytes();
       });
     }
+  }
+
+  CostTable costs_of_block() {
+    const auto known = settings_.costs.find(block_.threads);
+    if (known != settings_.costs.end()) return known->second;
+    progress_.step(block_.title() + ": what drawing and testing cost", 0.2);
+    const CostTable costs = calibrate();
+    watch_.calibrated(costs);
+    return costs;
   }
 
   void time_rounds() {

@@ -4,6 +4,7 @@
 #include <csignal>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -24,6 +25,7 @@ struct RunSettings {
   bool force = false;              // measure again what was not measured by this run
   bool retry_failed = false;       // try failed cells again
   std::set<std::string> given_up;  // ids of cells that this run does not try again
+  std::map<int, CostTable> costs;  // measured by this run before, by number of threads
 };
 
 struct BlockOutcome {
@@ -38,12 +40,15 @@ struct BlockOutcome {
 struct CellWatch {
   std::function<void(const std::string& cell_id, double timeout_s)> begin;
   std::function<void()> end;
+  /// The block has measured what drawing and testing cost with its number of threads.
+  std::function<void(const CostTable& costs)> calibrated;
 };
 
 /// Cells that are done are left alone; the others get the rounds that are missing, interleaved with
 /// the block's anchors in shuffled order. They are saved after each whole round: a round counts
-/// only together with its anchors. A cell that fails is stored with its reason. `stop` ends the run
-/// after the present pass. Throws InputError for scenes, paths and results that are wrong.
+/// only together with its anchors. What drawing and testing cost is measured before the first
+/// round, unless the settings have it. A cell that fails is stored with its reason. `stop` ends the
+/// run after the present pass. Throws InputError for scenes, paths and results that are wrong.
 BlockOutcome run_block(const Block& block, const RunSettings& settings, const Registry& registry,
                        Progress& progress, const CellWatch& watch,
                        const volatile std::sig_atomic_t& stop);

@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -93,15 +94,35 @@ void tell(int pipe, const std::string& message) {
   }
 }
 
+std::string to_text(const CostTable& costs) {
+  std::ostringstream text;
+  text.precision(std::numeric_limits<double>::max_digits10);
+  for (const CostQuantity& quantity : cost_quantities()) {
+    const Cost& cost = costs.*quantity.cost;
+    text << " " << cost.ns << " " << cost.low_ns << " " << cost.high_ns;
+  }
+  return text.str();
+}
+
+CostTable costs_from_text(std::istream& in) {
+  CostTable costs;
+  for (const CostQuantity& quantity : cost_quantities()) {
+    Cost& cost = costs.*quantity.cost;
+    in >> cost.ns >> cost.low_ns >> cost.high_ns;
+  }
+  return costs;
+}
+
 /// The child: runs the block and tells the parent what it does. Messages:
-///   cell ID SECONDS | idle | member ID | outcome MEASURED PRESENT FAILED STOPPED | error TEXT |
-///   failure TEXT
+///   cell ID SECONDS | idle | costs NS LOW HIGH for each quantity | member ID | outcome MEASURED
+///   PRESENT FAILED STOPPED | error TEXT | failure TEXT
 int run_child(int pipe, const Block& block, const RunSettings& settings, const Registry& registry,
               Progress& progress) {
   const CellWatch watch{[&](const std::string& id, double seconds) {
                           tell(pipe, "cell " + id + " " + std::to_string(seconds));
                         },
-                        [&] { tell(pipe, "idle"); }};
+                        [&] { tell(pipe, "idle"); },
+                        [&](const CostTable& costs) { tell(pipe, "costs" + to_text(costs)); }};
   try {
     const BlockOutcome outcome =
         run_block(block, settings, registry, progress, watch, stop_requested);
@@ -123,7 +144,8 @@ int run_child(int pipe, const Block& block, const RunSettings& settings, const R
 
 /// What the parent knows of a child.
 struct Child {
-  std::string cell;  // that runs now; "" between cells
+  std::optional<CostTable> costs;  // that it measured
+  std::string cell;                // that runs now; "" between cells
   std::chrono::steady_clock::time_point deadline;
   std::optional<BlockOutcome> outcome;
   std::vector<std::string> members;
@@ -144,6 +166,8 @@ void take_message(const std::string& line, Child& child) {
                      std::chrono::milliseconds(static_cast<long long>(child.timeout_s * 1e3));
   } else if (word == "idle") {
     child.cell.clear();
+  } else if (word == "costs") {
+    child.costs = costs_from_text(in);
   } else if (word == "member") {
     in >> child.members.emplace_back();
   } else if (word == "outcome") {
@@ -259,6 +283,7 @@ RunOutcome run_blocks(const std::vector<Block>& blocks, const RunOptions& option
     // A cell that brings the process down is marked as failed and left out of the next attempt.
     for (std::size_t attempt = 0; attempt <= block.cullers.size(); ++attempt) {
       const Child child = run_in_child(block, settings, registry, progress);
+      if (child.costs) settings.costs[block.threads] = *child.costs;
       total.cells.insert(child.members.begin(), child.members.end());
       std::vector<std::string>& members = total.cells_of_block[mine[i]];
       members.insert(members.end(), child.members.begin(), child.members.end());

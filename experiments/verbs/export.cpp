@@ -54,6 +54,11 @@ std::vector<std::string> column_names(const std::set<std::string>& counters) {
                            "efficiency_low", "efficiency_high"}) {
     columns.emplace_back(name);
   }
+  for (const CostQuantity& quantity : cost_quantities()) {
+    for (const char* part : {"_ns", "_ns_low", "_ns_high"}) {
+      columns.push_back("cost." + std::string(quantity.name) + part);
+    }
+  }
   for (const std::string& name : counters) columns.push_back("counter." + name);
   return columns;
 }
@@ -65,6 +70,19 @@ void add_statistics(const CellSummary& cell, Row& row) {
   }
   row.insert(row.end(), {cell.against_none.value, cell.against_none.low, cell.against_none.high,
                          cell.efficiency.low, cell.efficiency.high});
+}
+
+/// What drawing and testing cost on the cell's machine; old results do not have it.
+void add_costs(const BlockSummary& block, const CellSummary& cell, Row& row) {
+  const auto costs = block.costs.find(cell.machine);
+  for (const CostQuantity& quantity : cost_quantities()) {
+    if (costs == block.costs.end()) {
+      row.insert(row.end(), 3, TableValue());
+      continue;
+    }
+    const Cost& cost = costs->second.*quantity.cost;
+    row.insert(row.end(), {cost.ns, cost.low_ns, cost.high_ns});
+  }
 }
 
 /// Per frame; a counter that the cell does not have does not apply.
@@ -104,6 +122,7 @@ int export_results(const Lab& lab, const std::string& format,
         row.push_back(whole_if_exact(cell.metric(std::string(metric.name))));
       }
       add_statistics(cell, row);
+      add_costs(block, cell, row);
       add_counters(cell, counters, row);
       table.add(std::move(row));
     }

@@ -202,7 +202,6 @@ TEST(Summary, WhereNothingIsDrawnNothingIsComparedWithDrawing) {
   for (const CellSummary& cell : blocks.front().cells) {
     EXPECT_FALSE(cell.against_none.measured());
     EXPECT_FALSE(cell.efficiency.measured());
-    EXPECT_TRUE(std::isnan(cell.modelled_frame_ms));
     EXPECT_TRUE(cell.cull_us.measured());
   }
 }
@@ -224,14 +223,67 @@ TEST(Summary, WithoutVerdictsNothingIsJudged) {
   EXPECT_TRUE(std::isnan(cell.metric("false_px")));
 }
 
-TEST(Summary, TheModelledFrameAddsTestsAndTrianglesAtTheCostOfDrawingEverything) {
-  JudgedCell none = make_cell("none", {{5.0, 5.0}});
-  none.cell.frames[0].submitted_triangles = none.cell.frames[1].submitted_triangles = 1000;
-  const std::vector<BlockSummary> blocks = summarise({none, make_cell(frustum, {{3.0, 3.0}})});
-  const CellSummary& cell = blocks.front().cells.back();
-  EXPECT_EQ(cell.canonical, frustum);
-  // 3 ms of tests, and 200 of the 1000 triangles that none draws in 4 ms.
-  EXPECT_DOUBLE_EQ(cell.modelled_frame_ms, 3.8);
+CostTable made_up_costs(double triangle_ns) {
+  CostTable costs;
+  costs.triangle = Cost::exactly(triangle_ns);
+  costs.draw = Cost::exactly(1000.0);
+  costs.piece = Cost::exactly(100.0);
+  return costs;
+}
+
+/// make_cell with costs, and in both frames `draws` in `pieces`.
+JudgedCell calibrated_cell(const std::string& chain, const SampleGrid& times, double triangle_ns,
+                           std::uint64_t draws = 0, std::uint64_t pieces = 0) {
+  JudgedCell judged = make_cell(chain, times);
+  judged.cell.costs = made_up_costs(triangle_ns);
+  for (CellFrame& frame : judged.cell.frames) {
+    frame.draws = draws;
+    frame.pieces = pieces;
+  }
+  return judged;
+}
+
+TEST(Summary, TheModelledFrameAddsTestsAndWhatIsSubmittedAtCalibratedCosts) {
+  // 3 ms of tests; 200 triangles at 2 us, 50 draws at 1 us, 70 pieces at 0.1 us beyond the first of
+  // each.
+  const CellSummary cell = only_cell(calibrated_cell(frustum, {{9.0, 9.0}}, 2000.0, 50, 120));
+  EXPECT_DOUBLE_EQ(cell.modelled_frame_ms, 3.0 + 0.4 + 0.05 + 0.007);
+}
+
+TEST(Summary, TheModelledFrameDoesNotNeedADrawnBlock) {
+  JudgedCell judged = calibrated_cell(frustum, {{9.0, 9.0}}, 2000.0);
+  judged.cell.key.device = "none";
+  EXPECT_DOUBLE_EQ(only_cell(judged).modelled_frame_ms, 3.4);
+}
+
+TEST(Summary, AllCellsOfAMachineAreModelledWithOneTable) {
+  const std::vector<BlockSummary> blocks =
+      summarise({calibrated_cell("none", {{9.0, 9.0}}, 1000.0),
+                 calibrated_cell("backface.polygon", {{9.0, 9.0}}, 2000.0),
+                 calibrated_cell(frustum, {{9.0, 9.0}}, 6000.0)});
+  EXPECT_DOUBLE_EQ(blocks.front().costs.at("one").triangle.ns, 2000.0) << "the median";
+  for (const CellSummary& cell : blocks.front().cells) {
+    EXPECT_DOUBLE_EQ(cell.modelled_frame_ms, 3.4) << cell.culler;
+  }
+}
+
+TEST(Summary, AMethodThatUsesTheDeviceIsModelledByWhatItSavesThere) {
+  JudgedCell asks = calibrated_cell("backface.gl[open=two_sided]", {{4.0, 4.0}}, 2000.0);
+  asks.cell.asks_device = true;
+  add_anchor(asks, "none", {{8.0, 8.0}});
+  const JudgedCell none = calibrated_cell("none", {{8.0, 8.0}}, 2000.0);
+  const std::vector<BlockSummary> blocks = summarise({none, asks});
+  EXPECT_DOUBLE_EQ(blocks.front().cells.front().modelled_frame_ms, 3.4);
+  EXPECT_DOUBLE_EQ(blocks.front().cells.back().modelled_frame_ms, 1.7);
+  EXPECT_TRUE(std::isnan(only_cell(asks).modelled_frame_ms)) << "there is no none to model";
+}
+
+TEST(Summary, ResultsFromBeforeCostsWereMeasuredHaveNoModelledFrame) {
+  const std::vector<BlockSummary> blocks =
+      summarise({make_cell("none", {{9.0, 9.0}}), calibrated_cell(frustum, {{9.0, 9.0}}, 2000.0)});
+  EXPECT_FALSE(blocks.front().cells.front().calibrated);
+  EXPECT_TRUE(std::isnan(blocks.front().cells.front().modelled_frame_ms));
+  EXPECT_DOUBLE_EQ(blocks.front().cells.back().modelled_frame_ms, 3.4);
 }
 
 TEST(Summary, TheControlGivesTheNoise) {

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "common/geometry/random.h"
 #include "common/scene/error.h"
 #include "experiments/results/files.h"
@@ -20,10 +22,13 @@ ResultCell sample_cell() {
   cell.status = ResultCell::Status::done;
   cell.guarantee = Guarantee::image_exact;
   cell.granularity = Granularity::triangle;
-  cell.frames = {{"set0", "truth0", 12, {{"plane_tests", 3}}}, {"set1", "truth1", 24, {}}};
+  cell.frames = {{"set0", "truth0", 12, {{"plane_tests", 3}}, 4, 5, "set2"},
+                 {"set1", "truth1", 24, {}, 6, 7, ""}};
   cell.rounds = {{"session", 0, {0.1, 0.2}, {1.0, 2.0}, {3.0, 4.0}, {5.0, 1.0 / 3.0}}};
   cell.anchors["oracle"] = {{"session", 0, {2.0, 2.5}}};
   cell.context = {{"cpu", "a processor"}};
+  cell.costs = CostTable::typical();
+  cell.costs->triangle = {1.0 / 3.0, 0.25, 0.5};
   return cell;
 }
 
@@ -33,6 +38,36 @@ TEST(ResultCell, ComesBackFromItsFileAsItWas) {
   EXPECT_EQ(to_json(back), to_json(cell));
   EXPECT_EQ(back.key.id(), cell.key.id());
   EXPECT_EQ(back.rounds[0].frame_ms[1], 1.0 / 3.0);
+  EXPECT_EQ(back.costs, cell.costs);
+}
+
+TEST(ResultCell, IsReadWithoutCostsIfItIsFromBeforeTheyWereMeasured) {
+  nlohmann::json old = nlohmann::json::parse(to_json(sample_cell()));
+  old.erase("costs");
+  for (nlohmann::json& frame : old.at("frames")) {
+    for (const char* name : {"draws", "pieces", "one_sided"}) frame.erase(name);
+  }
+  const ResultCell back = parse_cell(old.dump(), "test").value();
+  EXPECT_FALSE(back.costs.has_value());
+  EXPECT_EQ(back.frames[0].submitted_triangles, 12U);
+  EXPECT_EQ(back.frames[0].draws, 0U);
+}
+
+TEST(ResultCell, KeepsEveryCostWithItsUnitAndSpread) {
+  const nlohmann::json costs = nlohmann::json::parse(to_json(sample_cell())).at("costs");
+  EXPECT_EQ(costs.size(), cost_quantities().size());
+  EXPECT_EQ(costs.at(0), nlohmann::json({{"quantity", "triangle"},
+                                         {"value", 1.0 / 3.0},
+                                         {"unit", "ns"},
+                                         {"low", 0.25},
+                                         {"high", 0.5}}));
+}
+
+TEST(ResultCell, IsJudgedAnewIfTheDeviceLeavesOutOtherBacks) {
+  const ResultCell cell = sample_cell();
+  ResultCell other = cell;
+  other.frames[0].one_sided = "set3";
+  EXPECT_NE(answer_hash(cell), answer_hash(other));
 }
 
 TEST(ResultCell, EveryPartOfTheKeyChangesTheName) {

@@ -62,6 +62,8 @@ TEST_F(Run, MeasuresEveryCellWithItsAnchors) {
     EXPECT_EQ(cell.rounds.size(), 2U);
     EXPECT_EQ(cell.frames.size(), 5U);
     EXPECT_EQ(cell.anchors.size(), 3U) << "none and both oracles, paired with every round";
+    EXPECT_TRUE(cell.costs.has_value());
+    EXPECT_EQ(cell.costs, cells().front().costs) << "measured once in a run";
     EXPECT_FALSE(cell.context.at("machine").empty());
     for (const CellFrame& frame : cell.frames) {
       EXPECT_EQ(ResultStore::open(results()).load_set(frame.set).triangle_count(),

@@ -88,6 +88,8 @@ TEST(Verbs, ExportCompareAndShowReadTheResultsOfARun) {
   for (const auto& cell : objects(exported.out)) {
     EXPECT_EQ(cell.at("false_px"), 0) << cell;
     EXPECT_GT(cell.at("frame_ms"), 0.0) << cell;
+    EXPECT_GE(cell.at("cost.triangle_ns_high"), cell.at("cost.triangle_ns_low")) << cell;
+    EXPECT_GT(cell.at("modelled_frame_ms"), 0.0) << cell;
   }
   const std::string csv = run_vislab({"export", "csv", "--results", results}).out;
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 6);

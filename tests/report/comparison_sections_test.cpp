@@ -100,6 +100,32 @@ TEST(GuideSection, GivesOneSentenceOfAdviceAndARowAScene) {
   EXPECT_EQ(guides[0].lists.at("rows")[0].values.at("moving"), "–");
 }
 
+TEST(CostsSection, HasARowForEachFigureOfEveryMachine) {
+  BlockSummary first = fabricated_block("first");
+  BlockSummary second = fabricated_block("second");
+  for (const double ns : {200.0, 300.0}) {
+    CostTable costs = CostTable::typical();
+    costs.triangle = {ns, ns - 10.0, ns + 10.0};
+    (ns < 250.0 ? first : second).costs["one"] = costs;
+  }
+  second.costs["two"] = CostTable::typical();
+  const std::vector<Fields> rows = cost_fields({first, second});
+  ASSERT_EQ(rows.size(), 2 * cost_quantities().size());
+  EXPECT_EQ(rows[0].values.at("machine"), "one");
+  EXPECT_EQ(rows[0].values.at("quantity"), "`triangle`");
+  EXPECT_EQ(rows[0].values.at("cost"), "250 (240–260)");
+  EXPECT_EQ(rows.back().values.at("machine"), "two");
+}
+
+TEST(CostsSection, CountsTheCellsThatHaveNone) {
+  BlockSummary block = fabricated_block("first");
+  const std::size_t cells = block.cells.size();
+  EXPECT_EQ(count_uncalibrated({block}), cells);
+  block.cells.front().calibrated = true;
+  block.cells.back().rounds = 0;
+  EXPECT_EQ(count_uncalibrated({block}), cells - 2);
+}
+
 TEST(PublishedSection, RowsWithoutCellsSaySoAndSourcesWithoutAnyAreLeftOut) {
   BlockSummary block = fabricated_block("mixed");
   block.cells.push_back(fabricated_cell("frustum.flat", 0.5, 0, 1.0));
