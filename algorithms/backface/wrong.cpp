@@ -157,6 +157,7 @@ class PrintedCostSign : public FacingCuller {
 std::unique_ptr<ICuller> class_centre(CullerInfo info, const ParameterValues& values) {
   NormalMaskOptions options;
   options.open = culls_open(values);
+  options.n = static_cast<int>(values.integer("n"));
   options.class_test = ClassTest::centre;
   return make_normal_mask(std::move(info), options);
 }
@@ -221,6 +222,10 @@ CullerInfo describe() {
       ParameterSpec::real("test_cost", 1.0, 0.0, 1000.0, "triangles", ParameterSpec::Stage::build,
                           "printed_cost_sign: t_C / r, the time to test a cluster in that of "
                           "drawing a triangle; the others do without"),
+      ParameterSpec::integer("n", NormalMaskOptions().n, 1, DirectionCube::max_n, "",
+                             ParameterSpec::Stage::build,
+                             "class_centre: squares along an edge of the direction cube; the "
+                             "others do without"),
       open_parameter()};
   info.cost = "O(candidate triangles)";
   info.limits =
