@@ -11,9 +11,7 @@
 namespace vislab::backface_culling {
 namespace {
 
-/// Lines of a side, filled up to whole vectors.
-constexpr std::size_t most_lines = 24;
-static_assert(most_lines > DirectionCube::max_n);
+static_assert(SidePoints::most > DirectionCube::max_n);
 
 constexpr int axis_of(int side) { return side / 2; }
 constexpr float sign_of(int side) { return side % 2 == 0 ? 1.0F : -1.0F; }
@@ -46,19 +44,6 @@ class BitString {
   std::uint32_t filled_ = 0;
   std::size_t full_ = 0;
 };
-
-/// For each row the number of points on its line that are above the limit. Along a row the value
-/// rises or falls throughout, also as rounded: they are the first ones or the last ones.
-std::array<std::uint32_t, most_lines> count_above(const std::array<float, most_lines>& rows,
-                                                  std::span<const float> columns, float along_row,
-                                                  float limit) {
-  std::array<std::uint32_t, most_lines> counts{};
-  for (const float column : columns) {
-    const float term = column * along_row;
-    for (std::size_t j = 0; j < most_lines; ++j) counts[j] += rows[j] + term > limit ? 1U : 0U;
-  }
-  return counts;
-}
 
 }  // namespace
 
@@ -129,16 +114,20 @@ BackMask DirectionCube::facing_away(const MeshDirection& v) const {
     const float out = sign_of(side) * v.direction[axis];
     const float along_row = v.direction[(axis + 1) % 3];
     const float along_column = v.direction[(axis + 2) % 3];
-    std::array<float, most_lines> rows{};
-    for (std::size_t j = 0; j < lines_.size(); ++j) rows[j] = lines_[j] * along_column + out;
+    SidePoints points;
+    for (std::size_t j = 0; j < lines_.size(); ++j) points.rows[j] = lines_[j] * along_column + out;
     // Rounding keeps the order, so that the extreme values are at corners of the side.
     const float rise = std::abs(lines_.front() * along_row);
-    const auto [least, most] = std::minmax(rows[0], rows[lines_.size() - 1]);
+    const auto [least, most] = std::minmax(points.rows[0], points.rows[lines_.size() - 1]);
     if (least - rise > limit || !(most + rise > limit)) {
       for (std::uint32_t row = 0; row < n; ++row) string.append(least - rise > limit ? all : 0, n);
       continue;
     }
-    const std::array<std::uint32_t, most_lines> above = count_above(rows, lines_, along_row, limit);
+    // Along a row values rise or fall throughout, also as rounded: those above the limit are the
+    // first ones or the last ones.
+    std::array<std::uint32_t, SidePoints::most> above;
+    for (std::size_t i = 0; i < lines_.size(); ++i) points.columns[i] = lines_[i] * along_row;
+    count_above(points, lines_.size(), limit, above.data());
     for (std::uint32_t row = 0; row < n; ++row) {
       // A square's row lies between two lines, and its columns between two points of each.
       std::uint32_t squares = above[row];

@@ -17,21 +17,27 @@ namespace {
 
 #if HWY_TARGET == HWY_AVX3_DL
 
-void look_up_words(const BackMask& mask, const std::uint8_t* offsets, const std::uint8_t* bits,
-                   std::size_t words, std::uint64_t* back) {
-  const __m512i low_0 = _mm512_load_si512(mask.bytes.data());
-  const __m512i low_1 = _mm512_load_si512(mask.bytes.data() + 64);
-  const __m512i high_0 = _mm512_load_si512(mask.bytes.data() + 128);
-  const __m512i high_1 = _mm512_load_si512(mask.bytes.data() + 192);
-  for (std::size_t w = 0; w < words; ++w) {
-    const __m512i offset = _mm512_loadu_si512(offsets + 64 * w);
-    // The lowest 7 bits choose among the 128 bytes of two registers.
-    const __m512i low = _mm512_permutex2var_epi8(low_0, offset, low_1);
-    const __m512i high = _mm512_permutex2var_epi8(high_0, offset, high_1);
-    const __m512i byte = _mm512_mask_blend_epi8(_mm512_movepi8_mask(offset), low, high);
-    back[w] = _mm512_test_epi8_mask(byte, _mm512_loadu_si512(bits + 64 * w));
+/// A mask in registers.
+class Table {
+ public:
+  HWY_INLINE void load(const BackMask& mask) {
+    low_0_ = _mm512_load_si512(mask.bytes.data());
+    low_1_ = _mm512_load_si512(mask.bytes.data() + 64);
+    high_0_ = _mm512_load_si512(mask.bytes.data() + 128);
+    high_1_ = _mm512_load_si512(mask.bytes.data() + 192);
   }
-}
+  HWY_INLINE std::uint64_t word(const std::uint8_t* offsets, const std::uint8_t* bits) const {
+    const __m512i offset = _mm512_loadu_si512(offsets);
+    // The lowest 7 bits choose among the 128 bytes of two registers.
+    const __m512i low = _mm512_permutex2var_epi8(low_0_, offset, low_1_);
+    const __m512i high = _mm512_permutex2var_epi8(high_0_, offset, high_1_);
+    const __m512i byte = _mm512_mask_blend_epi8(_mm512_movepi8_mask(offset), low, high);
+    return _mm512_test_epi8_mask(byte, _mm512_loadu_si512(bits));
+  }
+
+ private:
+  __m512i low_0_, low_1_, high_0_, high_1_;
+};
 
 #elif HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4 || \
     HWY_TARGET == HWY_SSSE3
@@ -44,31 +50,35 @@ constexpr std::size_t lanes = HWY_MIN(HWY_LANES(std::uint8_t), 64);
 constexpr std::size_t vectors_in_word = 64 / lanes;
 constexpr std::size_t pieces_in_half = 8;
 
-bool is_zero(const BackMask& mask, std::size_t piece) {
-  const auto first = mask.bytes.begin() + static_cast<std::ptrdiff_t>(16 * piece);
-  return std::all_of(first, first + 16, [](std::uint8_t byte) { return byte == 0; });
-}
-
-void look_up_words(const BackMask& mask, const std::uint8_t* offsets, const std::uint8_t* bits,
-                   std::size_t words, std::uint64_t* back) {
-  const Bytes d;
-  const SignedBytes ds;
-  HWY_ALIGN std::uint8_t pieces[2 * pieces_in_half][lanes];
-  for (std::size_t k = 0; k < 2 * pieces_in_half; ++k) {
-    auto piece = hn::LoadDup128(d, mask.bytes.data() + 16 * k);
-    if (k % pieces_in_half != 0) {
-      piece = hn::Xor(piece, hn::LoadDup128(d, mask.bytes.data() + 16 * (k - 1)));
+/// A mask as differences of its pieces.
+class Table {
+ public:
+  HWY_INLINE void load(const BackMask& mask) {
+    const Bytes d;
+    const hn::Full128<std::uint8_t> d16;
+    for (std::size_t k = 0; k < 2 * pieces_in_half; ++k) {
+      auto piece = hn::LoadDup128(d, mask.bytes.data() + 16 * k);
+      if (k % pieces_in_half != 0) {
+        piece = hn::Xor(piece, hn::LoadDup128(d, mask.bytes.data() + 16 * (k - 1)));
+      }
+      hn::Store(piece, d, pieces_[k]);
     }
-    hn::Store(piece, d, pieces[k]);
+    // Behind the last piece that is not zero stands its own difference to zero, and then nothing: a
+    // direction cube of 16 x 16 squares a side needs 13 pieces of the 16.
+    high_pieces_ = pieces_in_half;
+    while (high_pieces_ > 0 &&
+           hn::AllTrue(d16, hn::Eq(hn::Load(d16, mask.bytes.data() +
+                                                     16 * (pieces_in_half + high_pieces_ - 1)),
+                                   hn::Zero(d16)))) {
+      --high_pieces_;
+    }
+    if (high_pieces_ > 0 && high_pieces_ < pieces_in_half) ++high_pieces_;
   }
-  // Behind the last piece that is not zero stands its own difference to zero, and then nothing: a
-  // direction cube of 16 x 16 squares a side needs 13 pieces of the 16.
-  std::size_t high_pieces = pieces_in_half;
-  while (high_pieces > 0 && is_zero(mask, pieces_in_half + high_pieces - 1)) --high_pieces;
-  if (high_pieces > 0 && high_pieces < pieces_in_half) ++high_pieces;
-  const auto sixteen = hn::Set(ds, std::int8_t{16});
-  const auto flip = hn::Set(d, std::uint8_t{0x80});
-  for (std::size_t w = 0; w < words; ++w) {
+  HWY_INLINE std::uint64_t word(const std::uint8_t* offsets, const std::uint8_t* bits) const {
+    const Bytes d;
+    const SignedBytes ds;
+    const auto sixteen = hn::Set(ds, std::int8_t{16});
+    const auto flip = hn::Set(d, std::uint8_t{0x80});
     // Two vectors at a time: each piece is loaded once for both.
     std::uint64_t word = 0;
     constexpr std::size_t step = HWY_MIN(vectors_in_word, 2);
@@ -77,13 +87,13 @@ void look_up_words(const BackMask& mask, const std::uint8_t* offsets, const std:
       hn::Vec<SignedBytes> high[step];
       hn::Vec<Bytes> byte[step];
       for (std::size_t i = 0; i < step; ++i) {
-        const auto offset = hn::LoadU(d, offsets + 64 * w + (v + i) * lanes);
+        const auto offset = hn::LoadU(d, offsets + (v + i) * lanes);
         low[i] = hn::BitCast(ds, offset);
         high[i] = hn::BitCast(ds, hn::Xor(offset, flip));
         byte[i] = hn::Zero(d);
       }
       for (std::size_t k = 0; k < pieces_in_half; ++k) {
-        const auto piece = hn::Load(d, pieces[k]);
+        const auto piece = hn::Load(d, pieces_[k]);
         for (std::size_t i = 0; i < step; ++i) {
           // A shuffle takes the lowest 4 bits, and answers 0 for negative numbers, which stay
           // negative because the subtraction does not go below -128.
@@ -91,15 +101,15 @@ void look_up_words(const BackMask& mask, const std::uint8_t* offsets, const std:
           low[i] = hn::SaturatedSub(low[i], sixteen);
         }
       }
-      for (std::size_t k = 0; k < high_pieces; ++k) {
-        const auto piece = hn::Load(d, pieces[pieces_in_half + k]);
+      for (std::size_t k = 0; k < high_pieces_; ++k) {
+        const auto piece = hn::Load(d, pieces_[pieces_in_half + k]);
         for (std::size_t i = 0; i < step; ++i) {
           byte[i] = hn::Xor(byte[i], hn::TableLookupBytesOr0(piece, hn::BitCast(d, high[i])));
           high[i] = hn::SaturatedSub(high[i], sixteen);
         }
       }
       for (std::size_t i = 0; i < step; ++i) {
-        const auto own = hn::LoadU(d, bits + 64 * w + (v + i) * lanes);
+        const auto own = hn::LoadU(d, bits + (v + i) * lanes);
         const auto set = hn::Ne(hn::And(byte[i], own), hn::Zero(d));
         std::array<std::uint8_t, 8> mask_bytes{};
         hn::StoreMaskBits(d, set, mask_bytes.data());
@@ -108,18 +118,66 @@ void look_up_words(const BackMask& mask, const std::uint8_t* offsets, const std:
         word |= part << ((v + i) * lanes);
       }
     }
-    back[w] = word;
+    return word;
   }
-}
+
+ private:
+  alignas(64) std::uint8_t pieces_[2 * pieces_in_half][lanes];
+  std::size_t high_pieces_ = pieces_in_half;
+};
 
 #else
 
-void look_up_words(const BackMask& mask, const std::uint8_t* offsets, const std::uint8_t* bits,
-                   std::size_t words, std::uint64_t* back) {
-  look_up_scalar(mask, offsets, bits, 64 * words, back);
-}
+/// A mask as it is.
+class Table {
+ public:
+  void load(const BackMask& mask) { mask_ = &mask; }
+  std::uint64_t word(const std::uint8_t* offsets, const std::uint8_t* bits) const {
+    std::uint64_t word = 0;
+    look_up_scalar(*mask_, offsets, bits, 64, &word);
+    return word;
+  }
+
+ private:
+  const BackMask* mask_ = nullptr;
+};
 
 #endif
+
+void look_up_all(const BackMask& mask, const std::uint8_t* offsets, const std::uint8_t* bits,
+                 std::size_t words, std::uint64_t* back) {
+  Table table;
+  table.load(mask);
+  for (std::size_t w = 0; w < words; ++w) {
+    back[w] = table.word(offsets + 64 * w, bits + 64 * w);
+  }
+}
+
+void look_up_each(const BackMask* masks, const std::uint16_t* numbers, const std::uint8_t* offsets,
+                  const std::uint8_t* bits, std::size_t words, std::uint64_t* back) {
+  Table table;
+  for (std::size_t w = 0; w < words; ++w) {
+    if (w == 0 || numbers[w] != numbers[w - 1]) table.load(masks[numbers[w]]);
+    back[w] = table.word(offsets + 64 * w, bits + 64 * w);
+  }
+}
+
+void count_points(const SidePoints& points, std::size_t count, float limit, std::uint32_t* above) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  const hn::CappedTag<float, 16> f;
+  const hn::RebindToUnsigned<hn::CappedTag<float, 16>> u;
+  const auto one = hn::Set(u, std::uint32_t{1});
+  const auto least = hn::Set(f, limit);
+  for (std::size_t j = 0; j < SidePoints::most; j += hn::Lanes(f)) {
+    const auto row = hn::Load(f, points.rows.data() + j);
+    auto sum = hn::Zero(u);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto value = hn::Add(row, hn::Set(f, points.columns[i]));
+      sum = hn::Add(sum, hn::IfThenElseZero(hn::RebindMask(u, hn::Gt(value, least)), one));
+    }
+    hn::StoreU(sum, u, above + j);
+  }
+}
 
 }  // namespace
 }  // namespace vislab::backface_culling::HWY_NAMESPACE
@@ -128,12 +186,23 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace vislab::backface_culling {
 
-HWY_EXPORT(look_up_words);
+HWY_EXPORT(look_up_all);
+HWY_EXPORT(look_up_each);
+HWY_EXPORT(count_points);
+
+void count_above(const SidePoints& points, std::size_t count, float limit, std::uint32_t* above) {
+  HWY_DYNAMIC_DISPATCH(count_points)(points, count, limit, above);
+}
+
+void look_up_words(const BackMask* masks, const std::uint16_t* numbers, const std::uint8_t* offsets,
+                   const std::uint8_t* bits, std::size_t words, std::uint64_t* back) {
+  HWY_DYNAMIC_DISPATCH(look_up_each)(masks, numbers, offsets, bits, words, back);
+}
 
 void look_up(const BackMask& mask, const std::uint8_t* offsets, const std::uint8_t* bits,
              std::size_t count, std::uint64_t* back) {
   const std::size_t words = (count + 63) / 64;
-  HWY_DYNAMIC_DISPATCH(look_up_words)(mask, offsets, bits, words, back);
+  HWY_DYNAMIC_DISPATCH(look_up_all)(mask, offsets, bits, words, back);
   if (count % 64 != 0) back[words - 1] &= ~std::uint64_t{0} >> (64 - count % 64);
 }
 

@@ -26,28 +26,12 @@
 
 #include "algorithms/backface/normal_mask.h"
 
-#include <algorithm>
-
 #include "algorithms/backface/facing_culler.h"
-#include "algorithms/backface/view_masks.h"
+#include "algorithms/backface/masked_mesh.h"
 #include "common/culler/registry.h"
-#include "common/spatial/huge_pages.h"
 
 namespace vislab::backface_culling {
 namespace {
-
-/// Triangles that share a rectangle of the view: a word of the answer.
-constexpr std::uint32_t block_size = 64;
-
-/// The classes of a mesh's triangles.
-struct MaskedMesh {
-  using Bytes = std::vector<std::uint8_t, HugePageAllocator<std::uint8_t>>;
-
-  Bytes offsets;      // padded
-  Bytes bits;         // padded; 0: of no class, never culled
-  PointBoxes blocks;  // around one point of each triangle
-  PointBoxes whole;
-};
 
 class NormalMask : public FacingCuller {
  public:
@@ -69,107 +53,33 @@ class NormalMask : public FacingCuller {
 
   void add_mesh(MeshId id, const Mesh& mesh, const MeshFrame& frame, const BuildContext&) override {
     meshes_.resize(id + 1);
-    const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
-    MaskedMesh& made = meshes_[id];
-    made.offsets.assign(count + mask_kernel_padding, 0);
-    made.bits.assign(count + mask_kernel_padding, 0);
-    made.blocks = PointBoxes((count + block_size - 1) / block_size);
-    made.whole = PointBoxes(1);
-    for (std::uint32_t triangle = 0; triangle < count; ++triangle) {
-      if (const std::optional<int> found = masks_.cube().class_of(mesh, triangle)) {
-        made.offsets[triangle] = static_cast<std::uint8_t>(*found / 8);
-        made.bits[triangle] = static_cast<std::uint8_t>(1 << (*found % 8));
-      }
-      const glm::dvec3 point =
-          glm::dvec3(mesh.positions[mesh.triangles[triangle].x]) - frame.middle;
-      made.blocks.add(triangle / block_size, point);
-      made.whole.add(0, point);
-    }
+    meshes_[id] = MaskedMesh(mesh, frame, masks_.cube());
   }
 
   void begin(const Frame& frame) override { masks_.start(frame.camera, frame.index); }
 
   std::span<const std::uint64_t> mark_mesh(const ObjectView& view) override {
-    const glm::dmat4x3& transform = view.frame.objects.transforms[view.object];
-    mesh_ = &meshes_[view.mesh];
-    masks_.select(glm::dmat3(transform[0], transform[1], transform[2]));
-    if (masks_.lines().x.empty()) {
-      mask_ = &masks_.orthographic_mask();
-      return {};
-    }
-    rows_ = camera_rows(view.frame.camera, transform, frame_of(view.mesh));
-    Rectangle whole;
-    find_rectangles(rows_, masks_.lines(), mesh_->whole, 0, 1, &whole);
-    const bool one_mask = whole.known() && (whole.is_one_sector() || mesh_->blocks.count() == 1);
-    mask_ = one_mask ? &masks_.mask(whole) : nullptr;
+    marker_.start(meshes_[view.mesh], frame_of(view.mesh), view.frame.camera,
+                  view.frame.objects.transforms[view.object]);
     return {};
   }
 
   void mark_range(const ObjectView&, std::uint32_t first, std::uint32_t count,
                   std::uint64_t* back) override {
     triangles_tested_ += count;
-    if (count == 0) return;
-    if (mask_ != nullptr) {
-      look_up(*mask_, mesh_->offsets.data() + first, mesh_->bits.data() + first, count, back);
-    } else {
-      mark_blocks(first, count, back);
-    }
+    marker_.mark(first, count, back);
   }
 
   std::size_t mesh_bytes() const override {
     std::size_t sum = meshes_.capacity() * sizeof(MaskedMesh);
-    for (const MaskedMesh& mesh : meshes_) {
-      sum +=
-          mesh.offsets.capacity() + mesh.bits.capacity() + mesh.blocks.bytes() + mesh.whole.bytes();
-    }
+    for (const MaskedMesh& mesh : meshes_) sum += mesh.bytes();
     return sum;
   }
 
  private:
-  /// Runs of blocks that are seen in the same sectors, one after the other.
-  void mark_blocks(std::uint32_t first, std::uint32_t count, std::uint64_t* back) {
-    const std::uint32_t end = first + count;
-    const std::uint32_t first_block = first / block_size;
-    const std::uint32_t blocks = (end - 1) / block_size - first_block + 1;
-    rectangles_.resize(std::max<std::size_t>(rectangles_.size(), blocks));
-    find_rectangles(rows_, masks_.lines(), mesh_->blocks, first_block, blocks, rectangles_.data());
-    std::fill_n(back, words_of(count), 0);
-    for (std::uint32_t block = 0; block < blocks;) {
-      const Rectangle rectangle = rectangles_[block];
-      const std::uint32_t run = block;
-      while (block < blocks && rectangles_[block] == rectangle) ++block;
-      if (!rectangle.known()) continue;
-      const std::uint32_t from = std::max(first, (first_block + run) * block_size);
-      const std::uint32_t to = std::min(end, (first_block + block) * block_size);
-      mark_run(masks_.mask(rectangle), from, to - from, back, from - first);
-    }
-  }
-
-  /// Triangles from `from` on, as bits from `at` on.
-  void mark_run(const BackMask& mask, std::uint32_t from, std::uint32_t count, std::uint64_t* back,
-                std::uint32_t at) {
-    if (at % 64 != 0) {
-      // Up to the next word.
-      const std::uint32_t head = std::min(count, 64 - at % 64);
-      std::uint64_t word = 0;
-      look_up(mask, mesh_->offsets.data() + from, mesh_->bits.data() + from, head, &word);
-      back[at / 64] |= word << (at % 64);
-      from += head;
-      at += head;
-      count -= head;
-    }
-    if (count > 0) {
-      look_up(mask, mesh_->offsets.data() + from, mesh_->bits.data() + from, count, back + at / 64);
-    }
-  }
-
   ViewMasks masks_;
+  MaskMarker marker_{masks_};
   std::vector<MaskedMesh> meshes_;  // by mesh
-  // Of the object whose turn it is.
-  const MaskedMesh* mesh_ = nullptr;
-  const BackMask* mask_ = nullptr;  // of all of its triangles, if they share one
-  CameraRows rows_{};
-  std::vector<Rectangle> rectangles_;
   std::uint64_t triangles_tested_ = 0;
 };
 
@@ -206,7 +116,7 @@ CullerInfo describe() {
                     "squares along an edge of the direction cube, 6 n^2 classes of normals; not "
                     "more than 18, because a triangle's two bytes (one of 256 bytes, one of its 8 "
                     "bits) tell 2,048 classes apart; coarse classes are seldom behind as a whole"),
-      Spec::integer("sectors", defaults.sectors, 1, ViewMasks::most_sectors, "", Spec::Stage::build,
+      Spec::integer("sectors", defaults.sectors, 1, SectorLines::most_sectors, "", Spec::Stage::build,
                     "parts of the view a side, each with its own mask: 1 is the method as "
                     "published, which finds little in wide views; more find more, and cost a test "
                     "of all classes for each corner"),

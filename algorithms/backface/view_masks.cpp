@@ -9,22 +9,10 @@ namespace vislab::backface_culling {
 namespace {
 
 constexpr std::size_t part_count = 16;
-constexpr int lines_beyond = 5;  // on either side: 31 times a sector's width
+/// Of the hash table of rectangles, a power of two; half of it is used at most.
+constexpr std::size_t entry_count = 4096;
+constexpr std::size_t most_masks = entry_count / 2;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
-/// Lines between `low` and `high`, and those beyond. Their float values are the lines: rounding
-/// moves them, and nothing else.
-void make_lines(double low, double high, int sectors, std::vector<float>& lines) {
-  lines.clear();
-  const double width = (high - low) / sectors;
-  const auto add = [&](double at) {
-    lines.push_back(static_cast<float>(std::clamp(at, -1e30, 1e30)));
-  };
-  for (int i = lines_beyond; i > 0; --i) add(low - width * ((1 << i) - 1));
-  for (int i = 0; i < sectors; ++i) add(low + width * i);
-  add(high);
-  for (int i = 1; i <= lines_beyond; ++i) add(high + width * ((1 << i) - 1));
-}
 
 double greatest_row_sum(const glm::dmat3& m) {
   const glm::dvec3 sums = glm::abs(m[0]) + glm::abs(m[1]) + glm::abs(m[2]);
@@ -49,7 +37,9 @@ std::size_t slot_of(const glm::dmat3& linear) {
 }  // namespace
 
 ViewMasks::ViewMasks(DirectionCube cube, int sectors)
-    : cube_(std::move(cube)), sectors_(sectors), parts_(part_count) {}
+    : cube_(std::move(cube)), sectors_(sectors), parts_(part_count), entries_(entry_count) {
+  masks_.reserve(most_masks);
+}
 
 void ViewMasks::start(const Camera& camera, std::uint64_t frame_index) {
   if (started_ && camera == camera_ && frame_index == frame_index_) return;
@@ -58,18 +48,12 @@ void ViewMasks::start(const Camera& camera, std::uint64_t frame_index) {
   frame_index_ = frame_index;
   for (Part& part : parts_) part.used = false;
   part_ = nullptr;
-  lines_.x.clear();
-  lines_.y.clear();
-  const Lens& lens = camera.lens;
-  if (lens.projection == Projection::perspective) {
-    make_lines(lens.left / lens.near_m, lens.right / lens.near_m, sectors_, lines_.x);
-    make_lines(lens.bottom / lens.near_m, lens.top / lens.near_m, sectors_, lines_.y);
-  }
+  if (!orthographic()) lines_ = SectorLines(camera.lens, sectors_);
 }
 
 void ViewMasks::select(const glm::dmat3& linear) {
   if (part_ != nullptr && part_->linear == linear) return;
-  last_ = {};
+  forget_rectangles();
   part_ = &parts_[slot_of(linear)];
   if (part_->used && part_->linear == linear) return;
   part_->used = true;
@@ -79,18 +63,39 @@ void ViewMasks::select(const glm::dmat3& linear) {
   const bool regular = greatest_row_sum(linear * part_->inverse - glm::dmat3(1.0)) < 0.5;
   part_->inverse_size =
       regular ? greatest_row_sum(part_->inverse) : std::numeric_limits<double>::infinity();
-  part_->corner.assign(std::max<std::size_t>(1, lines_.x.size() * lines_.y.size()), 0);
+  const auto lines = static_cast<std::size_t>(lines_.count());
+  part_->corner.assign(lines * lines, 0);
   part_->masks.clear();
 }
 
-const BackMask& ViewMasks::mask(const Rectangle& rectangle) {
-  if (last_.known() && last_ == rectangle) return mask_;
-  mask_ = corner_mask(rectangle.left, rectangle.bottom);
-  mask_ = mask_ & corner_mask(rectangle.right, rectangle.bottom);
-  mask_ = mask_ & corner_mask(rectangle.left, rectangle.top);
-  mask_ = mask_ & corner_mask(rectangle.right, rectangle.top);
-  last_ = rectangle;
-  return mask_;
+void ViewMasks::forget_rectangles() {
+  masks_.assign(1, BackMask{});
+  if (++round_ == 0) {
+    std::ranges::fill(entries_, Entry{});
+    round_ = 1;
+  }
+}
+
+void ViewMasks::make_room(std::size_t count) {
+  if (masks_.size() + count > most_masks) forget_rectangles();
+}
+
+std::uint16_t ViewMasks::number_of(const Rectangle& rectangle) {
+  if (!rectangle.known()) return 0;
+  for (std::size_t at = (rectangle.key() * 0x9E3779B1U) >> 20U;; ++at) {
+    Entry& entry = entries_[at % entry_count];
+    if (entry.round != round_) {
+      entry = {rectangle, static_cast<std::uint16_t>(masks_.size()), round_};
+      BackMask common = corner_mask(rectangle.left, rectangle.bottom);
+      common = common & corner_mask(rectangle.right, rectangle.bottom);
+      common = common & corner_mask(rectangle.left, rectangle.top);
+      common = common & corner_mask(rectangle.right, rectangle.top);
+      masks_.push_back(common);
+    } else if (entry.rectangle != rectangle) {
+      continue;
+    }
+    return entry.number;
+  }
 }
 
 const BackMask& ViewMasks::orthographic_mask() {
@@ -98,12 +103,11 @@ const BackMask& ViewMasks::orthographic_mask() {
   return part_->masks.front();
 }
 
-const BackMask& ViewMasks::corner_mask(std::size_t x, std::size_t y) {
-  std::uint16_t& index = part_->corner[y * lines_.x.size() + x];
+const BackMask& ViewMasks::corner_mask(int x, int y) {
+  std::uint16_t& index = part_->corner[static_cast<std::size_t>(y * lines_.count() + x)];
   if (index == 0) {
     const Pose& pose = camera_.pose;
-    part_->masks.push_back(test(static_cast<double>(lines_.x[x]) * pose.right +
-                                static_cast<double>(lines_.y[y]) * pose.up - pose.back));
+    part_->masks.push_back(test(lines_.x(x) * pose.right + lines_.y(y) * pose.up - pose.back));
     index = static_cast<std::uint16_t>(part_->masks.size());
   }
   return part_->masks[index - 1U];

@@ -5,11 +5,12 @@
 // sources have it. A class is in a rectangle's mask if all of its normals face away along all four
 // corners of the rectangle; so the work is done once for each corner, when it is first asked for,
 // and a rectangle's mask, of one sector or several, is what its four corners have in common.
-// Beyond the view more lines follow, each step twice as wide as the one before, so that objects
-// outside of it have corners too. In orthographic views there is one direction, and one mask.
+// Lines beyond the view give objects outside of it corners too. In orthographic views there is one
+// direction, and one mask.
 // Masks are in the mesh's frame: a corner's direction goes through the inverse of the linear part,
 // and normals need nothing. Objects with the same linear part share masks within a frame.
-// Memory: 256 bytes a corner, for up to 16 linear parts at a time.
+// Memory: 256 bytes a corner, for up to 16 linear parts at a time, and 256 for each of up to 2,048
+// rectangles of the linear part in use.
 // Source: Zhang and Hoff 1997; Zachmann, Computer-Graphik 2, SS 2012, slides 15-18.
 #pragma once
 
@@ -24,9 +25,7 @@ namespace vislab::backface_culling {
 
 class ViewMasks {
  public:
-  static constexpr int most_sectors = 32;
-
-  /// `sectors` a side, 1 … most_sectors.
+  /// `sectors` a side, 1 … SectorLines::most_sectors.
   ViewMasks(DirectionCube cube, int sectors);
 
   const DirectionCube& cube() const { return cube_; }
@@ -36,15 +35,20 @@ class ViewMasks {
   /// Forgets the camera and its masks.
   void reset() { started_ = false; }
 
-  /// Lines between the sectors, and those beyond the view. Empty if the camera is orthographic.
-  const ViewLines& lines() const { return lines_; }
+  bool orthographic() const { return camera_.lens.projection == Projection::orthographic; }
+  /// Of a perspective camera.
+  const SectorLines& lines() const { return lines_; }
 
   /// Chooses the linear part of the next calls.
   void select(const glm::dmat3& linear);
-  /// Of a known rectangle. Valid until the next call.
-  const BackMask& mask(const Rectangle& rectangle);
   /// Of an orthographic camera. Valid until the next call.
   const BackMask& orthographic_mask();
+  /// The masks of rectangles, in masks(), by the order in which they were first asked for; 0 is an
+  /// empty mask, for rectangles that are not known. Numbers hold until select() or make_room().
+  std::uint16_t number_of(const Rectangle& rectangle);
+  const BackMask* masks() const { return masks_.data(); }
+  /// Forgets masks of rectangles unless there is room for this many more, up to 1,024.
+  void make_room(std::size_t count);
 
   /// How many directions all classes were tested against so far.
   std::uint64_t directions_tested() const { return directions_tested_; }
@@ -59,8 +63,15 @@ class ViewMasks {
     std::vector<std::uint16_t> corner;  // by lines, 1 + index of its mask, 0: none yet
     std::vector<BackMask> masks;
   };
+  /// A place of the hash table of rectangles.
+  struct Entry {
+    Rectangle rectangle;
+    std::uint16_t number = 0;
+    std::uint16_t round = 0;  // of another round: empty
+  };
 
-  const BackMask& corner_mask(std::size_t x, std::size_t y);
+  void forget_rectangles();
+  const BackMask& corner_mask(int x, int y);
   BackMask test(const glm::dvec3& direction);
 
   DirectionCube cube_;
@@ -68,11 +79,12 @@ class ViewMasks {
   bool started_ = false;
   Camera camera_;
   std::uint64_t frame_index_ = 0;
-  ViewLines lines_;
+  SectorLines lines_;
   std::vector<Part> parts_;
   Part* part_ = nullptr;  // selected
-  Rectangle last_;        // whose mask `mask_` is; not known: none
-  BackMask mask_;
+  std::vector<Entry> entries_;
+  std::uint16_t round_ = 1;
+  std::vector<BackMask> masks_;
   std::uint64_t directions_tested_ = 0;
 };
 

@@ -217,6 +217,16 @@ TEST(MaskKernel, AnswersTheSameWithEveryInstructionSetAndAnywhere) {
       std::vector<std::uint64_t> back(expected.size(), 77);
       look_up(mask, offsets.data() + first, bits.data() + first, count, back.data());
       EXPECT_EQ(back, expected) << target;
+      // The mask for every other word or two, and nothing for the rest.
+      const std::array<BackMask, 3> masks{BackMask{}, mask, mask};
+      const std::size_t words = count / 64;
+      std::vector<std::uint16_t> numbers(words);
+      for (std::size_t w = 0; w < words; ++w) numbers[w] = static_cast<std::uint16_t>(w % 3);
+      look_up_words(masks.data(), numbers.data(), offsets.data() + first, bits.data() + first,
+                    words, back.data());
+      for (std::size_t w = 0; w < words; ++w) {
+        EXPECT_EQ(back[w], numbers[w] == 0 ? 0 : expected[w]) << target;
+      }
     });
   }
 }
@@ -247,17 +257,18 @@ TEST(SectorKernel, PutsBoxesBetweenTheSameLinesWithEveryInstructionSet) {
         boxes.add(box, point - mesh.middle);
       }
     }
-    const ViewLines lines{{-4.0F, -1.0F, -0.5F, 0.0F, 0.25F, 0.5F, 1.0F, 3.0F},
-                          {-2.0F, -1.0F, 0.0F, 0.1F, 0.2F, 2.0F}};
-    const CameraRows rows = camera_rows(camera, transform, mesh);
+    Lens lens = perspective_lens(degrees(random.uniform(10.0, 150.0)), 1.3, 0.1, 100.0);
+    lens.left *= random.uniform(0.2, 2.0);
+    const SectorLines lines(lens, 1 + static_cast<int>(random.below(SectorLines::most_sectors)));
+    const SectorRows rows = sector_rows(camera, lines, transform, mesh);
     std::vector<Rectangle> expected(count);
-    find_rectangles_scalar(rows, lines, boxes, 0, count, expected.data());
+    find_rectangles_scalar(rows, boxes, 0, count, expected.data());
     with_every_target([&](const std::string& target) {
       std::vector<Rectangle> found(count);
-      find_rectangles(rows, lines, boxes, 0, count, found.data());
+      find_rectangles(rows, boxes, 0, count, found.data());
       EXPECT_EQ(found, expected) << target;
       const std::size_t first = count / 2;
-      find_rectangles(rows, lines, boxes, first, count - first, found.data());
+      find_rectangles(rows, boxes, first, count - first, found.data());
       EXPECT_TRUE(std::equal(expected.begin() + static_cast<std::ptrdiff_t>(first), expected.end(),
                              found.begin()))
           << target;
@@ -276,10 +287,10 @@ TEST(SectorKernel, PutsBoxesBetweenTheSameLinesWithEveryInstructionSet) {
         const long double x = glm::dot(seen, Exact(camera.pose.right));
         const long double y = glm::dot(seen, Exact(camera.pose.up));
         ASSERT_GT(z, 0.0L);
-        EXPECT_GE(x, lines.x[rectangle.left] * z);
-        EXPECT_LE(x, lines.x[rectangle.right] * z);
-        EXPECT_GE(y, lines.y[rectangle.bottom] * z);
-        EXPECT_LE(y, lines.y[rectangle.top] * z);
+        EXPECT_GE(x, lines.x(rectangle.left) * z);
+        EXPECT_LE(x, lines.x(rectangle.right) * z);
+        EXPECT_GE(y, lines.y(rectangle.bottom) * z);
+        EXPECT_LE(y, lines.y(rectangle.top) * z);
       }
     }
   }
@@ -352,7 +363,7 @@ TEST(NormalMask, IsNeverWrongWithAnyLensNumberOfSectorsAndTransform) {
     scene.finish();
     const std::string spec =
         "backface.normal_mask[n=" + std::to_string(2 + random.below(17)) +
-        ",sectors=" + std::to_string(1 + random.below(ViewMasks::most_sectors)) + "]";
+        ",sectors=" + std::to_string(1 + random.below(SectorLines::most_sectors)) + "]";
     for (int view = 0; view < 6; ++view) {
       Camera camera = test::facing_camera(random, scene);
       if (view % 2 == 0) camera.lens = any_lens(random, 20.0);

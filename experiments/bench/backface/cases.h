@@ -11,4 +11,10 @@ namespace vislab {
 /// cullers and chains against backface.polygon; building and memory.
 void add_cluster_cases(std::vector<BenchCase>& cases);
 
+/// Normal masks: speed of look-ups, and the shares that were predicted.
+void add_mask_cases(std::vector<BenchCase>& cases);
+
+/// Tests of single triangles: the forms of backface.polygon, the projected plane, and the kernel.
+void add_polygon_cases(std::vector<BenchCase>& cases);
+
 }  // namespace vislab
