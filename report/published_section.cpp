@@ -13,6 +13,28 @@ std::string place_of(const PublishedRow& row, const OwnFigure& own) {
          ", " + std::to_string(block.frames) + " frames";
 }
 
+std::string own_text(const PublishedRow& row, const OwnFigure& own) {
+  if (own.cell == nullptr) return "not run";
+  return row.is_share() ? format_percent(own.ratio.value) : format_estimate(own.ratio);
+}
+
+/// "`a` against `b`, frame_ms".
+std::string method_text(const PublishedRow& row) {
+  const std::string method = markdown_code(row.short_culler);
+  const std::string compared = method + " against " + markdown_code(row.short_against);
+  switch (row.metric) {
+    case PublishedRow::Metric::culled:
+      return method + ", share of all triangles";
+    case PublishedRow::Metric::decision_share:
+      return method + ", (update_us + cull_us) ÷ frame_ms";
+    case PublishedRow::Metric::cull_us:
+      return compared + ", cull_us";
+    case PublishedRow::Metric::frame_ms:
+      break;
+  }
+  return compared + ", frame_ms";
+}
+
 Fields row_fields(const PublishedRow& row, const OwnFigure& own) {
   Fields fields;
   fields.values["what"] = markdown_text(row.what);
@@ -24,11 +46,15 @@ Fields row_fields(const PublishedRow& row, const OwnFigure& own) {
     fields.values["fps"] = "–";
     fields.values["published"] = markdown_text(row.published);
   }
-  fields.values["metric"] = row.metric == PublishedRow::Metric::cull_us ? "cull_us" : "frame_ms";
-  fields.values["own"] = own.cell == nullptr ? "not run" : format_estimate(own.ratio);
+  if (!row.cannot_be_told.empty()) {
+    fields.values["own"] = "cannot be told";
+    fields.values["scene"] = "–";
+    fields.values["method"] = markdown_text(row.cannot_be_told);
+    return fields;
+  }
+  fields.values["own"] = own_text(row, own);
   fields.values["scene"] = markdown_text(place_of(row, own));
-  fields.values["method"] = markdown_code(row.short_culler);
-  fields.values["against"] = markdown_code(row.short_against);
+  fields.values["method"] = method_text(row);
   return fields;
 }
 

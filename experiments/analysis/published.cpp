@@ -26,17 +26,24 @@ double frames_a_second(const toml::table& table, std::string_view key, const std
 }
 
 PublishedRow::Metric metric_of(const toml::table& table, const std::string& file) {
+  using enum PublishedRow::Metric;
   const auto name = value_of<std::string>(table, "metric", "a text", file).value_or("frame_ms");
-  if (name == "frame_ms") return PublishedRow::Metric::frame_ms;
-  if (name == "cull_us") return PublishedRow::Metric::cull_us;
+  std::vector<std::string> known;
+  for (const auto& [text, metric] : {std::pair{"frame_ms", frame_ms},
+                                     {"cull_us", cull_us},
+                                     {"culled", culled},
+                                     {"decision_share", decision_share}}) {
+    if (name == text) return metric;
+    known.emplace_back(text);
+  }
   throw InputError(place(file, table) + ": " +
-                   unknown_name("metric of a [[row]]", name, {"frame_ms", "cull_us"}).what());
+                   unknown_name("metric of a [[row]]", name, known).what());
 }
 
 PublishedRow read_row(const toml::table& table, const Registry& registry, const std::string& file) {
   refuse_unknown_keys(table,
                       {"what", "table", "without_fps", "with_fps", "published", "metric", "scene",
-                       "path", "culler", "against"},
+                       "path", "culler", "against", "cannot_be_told"},
                       "[[row]]", file);
   PublishedRow row;
   row.what = text_of(table, "what", file);
@@ -47,7 +54,20 @@ PublishedRow read_row(const toml::table& table, const Registry& registry, const 
     row.without_fps = frames_a_second(table, "without_fps", file);
     row.with_fps = frames_a_second(table, "with_fps", file);
   }
+  if (const auto why = value_of<std::string>(table, "cannot_be_told", "a text", file)) {
+    for (const char* key : {"metric", "scene", "path", "culler", "against"}) {
+      if (table.contains(key)) {
+        throw InputError(place(file, table) + ": a row that cannot be told has no " + key);
+      }
+    }
+    row.cannot_be_told = *why;
+    return row;
+  }
   row.metric = metric_of(table, file);
+  if (row.is_share() && (row.published.empty() || table.contains("against"))) {
+    throw InputError(place(file, table) +
+                     ": a share has `published`, and nothing that it is against");
+  }
   row.scene = text_of(table, "scene", file);
   row.path = value_of<std::string>(table, "path", "a text", file).value_or("");
   const std::string culler = text_of(table, "culler", file);
@@ -85,6 +105,15 @@ const Estimate& measure_of(const CellSummary& cell, PublishedRow::Metric metric)
   return metric == PublishedRow::Metric::cull_us ? cell.cull_us.median : cell.against_none;
 }
 
+/// NaN if it was not measured.
+double share_of(const CellSummary& cell, const CellSummary& none, PublishedRow::Metric metric) {
+  if (metric == PublishedRow::Metric::culled) {
+    return 1.0 - cell.submitted_triangles / none.submitted_triangles;
+  }
+  return (cell.update_us.median.value + cell.cull_us.median.value) / 1e3 /
+         cell.frame_ms.median.value;
+}
+
 const CellSummary* find_cell(const BlockSummary& block, const std::string& chain,
                              PublishedRow::Metric metric) {
   const auto found = std::ranges::find_if(block.cells, [&](const CellSummary& cell) {
@@ -115,12 +144,18 @@ std::vector<PublishedFigures> load_published(const fs::path& folder, const Regis
 
 OwnFigure own_figure(const PublishedRow& row, const std::vector<BlockSummary>& blocks) {
   OwnFigure own;
+  if (!row.cannot_be_told.empty()) return own;
   for (const BlockSummary& block : blocks) {
     if (block.scene != row.scene || (!row.path.empty() && block.path != row.path)) continue;
     const CellSummary* const cell = find_cell(block, row.culler, row.metric);
     const CellSummary* const against = find_cell(block, row.against, row.metric);
     if (cell == nullptr || against == nullptr) continue;
     if (own.block != nullptr && weight_of(block) <= weight_of(*own.block)) continue;
+    if (row.is_share()) {
+      const double share = share_of(*cell, *against, row.metric);
+      own = {&block, cell, {share, share, share}};
+      continue;
+    }
     const Estimate& method = measure_of(*cell, row.metric);
     const Estimate& other = measure_of(*against, row.metric);
     // none's ratio to itself is 1, without an interval.

@@ -9,11 +9,15 @@
 //   without_fps = 58.92            frames a second without culling (or of what `against` stands
 //   with_fps = 66.21               for), and with; or instead of both
 //   published = "1.4, at most 3"   the ratio without ÷ with as the source words it
-//   metric = "frame_ms"            what stands for it here: a ratio of frame_ms or of cull_us
+//   metric = "frame_ms"            what stands for it here: a ratio of frame_ms or of cull_us; or
+//                                  a share: culled (of all triangles), or decision_share (of
+//                                  frame_ms that goes into update and cull)
 //   scene = "mixed"                of this scene, path ("" or left out: any path)
 //   path = "mixed_moving"
 //   culler = "frustum.two_step"    and method
-//   against = "none"               what it is compared with; none if left out
+//   against = "none"               what it is compared with; none if left out. Not for shares
+//   cannot_be_told = "…"           instead of metric, scene, path, culler and against: why nothing
+//                                  here can stand beside the figure
 #pragma once
 
 #include <filesystem>
@@ -32,7 +36,10 @@ struct PublishedRow {
   std::string culler, against;                        // canonical
   std::string short_culler = {}, short_against = {};  // the same as tables show them
   std::string published = {};                         // instead of frames a second
-  enum class Metric { frame_ms, cull_us } metric = Metric::frame_ms;
+  enum class Metric { frame_ms, cull_us, culled, decision_share } metric = Metric::frame_ms;
+  std::string cannot_be_told = {};  // if not empty, the row has no figure of ours
+
+  bool is_share() const { return metric == Metric::culled || metric == Metric::decision_share; }
 
   /// How many times as many frames a second as without; not with `published`.
   double ratio() const { return with_fps / without_fps; }
@@ -52,9 +59,9 @@ std::vector<PublishedFigures> load_published(const std::filesystem::path& folder
 struct OwnFigure {
   const BlockSummary* block = nullptr;
   const CellSummary* cell = nullptr;
-  /// The row's metric of `against` / that of the culler. frame_ms against none is paired by frame
-  /// and round; else it is the quotient of two such ratios, or of the medians of cull_us, with the
-  /// widest interval that they allow.
+  /// A share, without an interval; or the row's metric of `against` / that of the culler. frame_ms
+  /// against none is paired by frame and round; else it is the quotient of two such ratios, or of
+  /// the medians of cull_us, with the widest interval that they allow.
   Estimate ratio = Estimate::none();
 };
 

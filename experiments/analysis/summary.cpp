@@ -304,6 +304,7 @@ double CellSummary::metric(const std::string& name) const {
   if (name == "false_triangles") return if_judged(false_triangles);
   if (name == "false_jittered") return if_judged(false_jittered);
   if (name == "image_px") return drawn ? static_cast<double>(image_px) : nan;
+  if (name == "disputed_image_px") return drawn ? static_cast<double>(disputed_image_px) : nan;
   if (name == "excused_px") return if_judged(excused_px);
   if (name == "disputed_px") return drawn ? static_cast<double>(disputed_px) : nan;
   if (name == "over") return over;

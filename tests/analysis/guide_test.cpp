@@ -150,6 +150,22 @@ TEST(Published, OwnRatiosAreThoseOfTheRowsSceneAndMethods) {
   EXPECT_EQ(own_figure(row, with_none).cell, nullptr);
 }
 
+TEST(Published, SharesAreOfAllTrianglesAndOfTheFrame) {
+  CellSummary a = method("backface.a", 399.0, 5.0);
+  a.submitted_triangles = 60.0;
+  CellSummary none = method("none", 0.0, 10.0);
+  none.submitted_triangles = 100.0;
+  none.against_none = {1.0, 1.0, 1.0};
+  const std::vector<BlockSummary> blocks{block_with("s", {none, a})};
+  PublishedRow row{"w", "t", 0.0, 0.0, "s", "way", "backface.a", "none"};
+  row.metric = PublishedRow::Metric::culled;
+  EXPECT_DOUBLE_EQ(own_figure(row, blocks).ratio.value, 0.4);
+  row.metric = PublishedRow::Metric::decision_share;
+  EXPECT_DOUBLE_EQ(own_figure(row, blocks).ratio.value, 0.08);
+  row.cannot_be_told = "the model is not to be had";
+  EXPECT_EQ(own_figure(row, blocks).cell, nullptr);
+}
+
 TEST(Published, TheBlockWithTheMostFramesStandsForARowInAnyOrder) {
   BlockSummary brief = block_with("s", {method("frustum.a", 9.0, 5.0), method("none", 1.0, 10.0)});
   brief.frames = 12;

@@ -100,6 +100,27 @@ TEST(GuideSection, GivesOneSentenceOfAdviceAndARowAScene) {
   EXPECT_EQ(guides[0].lists.at("rows")[0].values.at("moving"), "–");
 }
 
+TEST(PublishedSection, ShowsSharesInPercentAndSaysWhyAFigureCannotBeTold) {
+  BlockSummary block = fabricated_block("bunny");
+  CellSummary cell = fabricated_cell("backface.a", 0.5, 0, 1.0);
+  cell.submitted_triangles = 0.55 * block.cells[0].submitted_triangles;
+  block.cells.push_back(cell);
+  PublishedRow share{"share",      "abstract", 0.0,          0.0,    "bunny",     "orbit",
+                     "backface.a", "none",     "backface.a", "none", "30 to 55 %"};
+  share.metric = PublishedRow::Metric::culled;
+  PublishedRow untold{"another", "abstract", 0.0, 0.0, "", "", "", ""};
+  untold.published = "7 %";
+  untold.cannot_be_told = "the model is not to be had";
+  const std::vector<Fields> entries =
+      published_fields({{"Title", "Source", "", {share, untold}}}, {block});
+  ASSERT_EQ(entries.size(), 1U);
+  const auto& rows = entries[0].lists.at("rows");
+  EXPECT_TRUE(rows[0].values.at("own").starts_with("45")) << rows[0].values.at("own");
+  EXPECT_EQ(rows[0].values.at("method"), "`backface.a`, share of all triangles");
+  EXPECT_EQ(rows[1].values.at("own"), "cannot be told");
+  EXPECT_EQ(rows[1].values.at("method"), "the model is not to be had");
+}
+
 TEST(CostsSection, HasARowForEachFigureOfEveryMachine) {
   BlockSummary first = fabricated_block("first");
   BlockSummary second = fabricated_block("second");
