@@ -144,7 +144,7 @@ class BackfaceExactness : public testing::Test {
             << " twice, in world " << world << ", first before camera " << first_wrong;
       }
     }
-    EXPECT_GT(edge_on, static_cast<std::uint64_t>(world_count) * 20);  // the eyes do hit planes
+    EXPECT_GT(edge_on, static_cast<std::uint64_t>(world_count) * 10);  // the eyes do hit planes
     std::cout << world_count * cameras_per_world << " cameras, " << edge_on
               << " triangles exactly edge-on\n";
     for (std::size_t s = 0; s < specs.size(); ++s) {
