@@ -7,7 +7,7 @@
 // Guarantee: conservative, as FacingCuller says: only what surely faces away goes. Triangles that
 //   have no area, or nearly, are never left out.
 // Cost: O(clusters of the objects offered) for the test; runs of triangles for the answer. 28 bytes
-//   a cluster (form=sphere: 32), and 8 a run of consecutive triangles.
+//   a cluster (form=sphere: 32), and 4 a run of consecutive triangles.
 // Limits: keeps clusters whose normals spread, those near the silhouette, and those that the eye is
 //   near to; with a sphere also those whose triangles lie far apart. A triangle here and there of
 //   kept clusters still faces away: backface.polygon after it finds those.
@@ -45,7 +45,8 @@ CullerInfo describe() {
           "bounding sphere, which finds less the farther the cluster's triangles lie apart"),
       ParameterSpec::integer(
           "size", 32, 1, 4096, "triangles", ParameterSpec::Stage::build,
-          "triangles in a cluster; smaller ones find more back faces and take more tests"),
+          "triangles in a cluster; smaller ones find more back faces and take more tests. Small "
+          "meshes get smaller ones, so that there are some dozens"),
       open_parameter()};
   info.cost =
       "O(clusters of the offered objects): nine multiplications each; and the runs of triangles "

@@ -13,7 +13,7 @@
 //   Triangles that have no area, or nearly, are never left out.
 // Cost: O(nodes whose verdicts run out + runs of triangles that change) for each object, at most
 //   O(clusters); nothing but the answer's ranges if the eye and the object stand still. Memory:
-//   some 120 bytes a node and 5 a run of triangles for a mesh; for each object 24 bytes a node and
+//   some 120 bytes a node and 4 a run of triangles for a mesh; for each object 24 bytes a node and
 //   one bit a triangle.
 // Limits: clusters that are neither seen from behind nor from the front are kept whole: chain
 //   backface.polygon after it. Fast turns about the object, and cuts, make every verdict run out.
@@ -52,7 +52,8 @@ CullerInfo describe() {
       ParameterSpec::integer(
           "size", 32, 1, 4096, "triangles", ParameterSpec::Stage::build,
           "triangles in a cluster, a leaf of the hierarchy; smaller ones find more back faces and "
-          "take more tests and memory"),
+          "take more tests and memory. Small meshes get smaller ones, so that there are some "
+          "dozens"),
       open_parameter()};
   info.cost =
       "O(nodes whose verdicts run out + runs of triangles that change) an object; without "

@@ -65,10 +65,23 @@ std::array<glm::dvec3, 3> around(const glm::dvec3& axis) {
   return {u, -0.5 * u + half_root * v, -0.5 * u - half_root * v};
 }
 
-/// The point p with the greatest axis . p among those with side * (n.p + d) <= 0 for all planes, by
-/// the dual simplex method: three planes whose normals the axis is a positive combination of hold
-/// the point; the plane that it violates most takes the place of one of them. It starts from a
-/// steep pyramid around the origin. Ends when nothing is violated, or early: the caller looks.
+/// How far down along the axis a point has to go until side * (n.p + d) <= -distance for all
+/// planes.
+double way_down(std::span<const glm::dvec4> planes, const glm::dvec3& axis, double side,
+                const glm::dvec3& point, double distance) {
+  double down = 0.0;
+  for (const glm::dvec4& plane : planes) {
+    const double above = side * (glm::dot(glm::dvec3(plane), point) + plane.w) + distance;
+    if (above > 0.0) down = std::max(down, above / (side * glm::dot(glm::dvec3(plane), axis)));
+  }
+  return down;
+}
+
+/// A point with a great axis . p among those with side * (n.p + d) <= 0 for all planes, by the dual
+/// simplex method: three planes whose normals the axis is a positive combination of hold the point;
+/// the plane that it violates most takes the place of one of them. It starts from a pyramid over
+/// the origin. Of all points on the way, straightened by going down the axis, the highest is taken
+/// that is not far away: nearly parallel planes meet anywhere.
 glm::dvec3 highest_point(std::span<const glm::dvec4> planes, const glm::dvec3& axis, double side,
                          double reach) {
   const std::array<glm::dvec3, 3> sideways = around(axis);
@@ -77,8 +90,17 @@ glm::dvec3 highest_point(std::span<const glm::dvec4> planes, const glm::dvec3& a
   glm::dvec3 weights(1.0 / 3.0);  // normals * weights = axis
   for (int i = 0; i < 3; ++i) normals[i] = axis + sideways[static_cast<std::size_t>(i)];
   glm::dvec3 point = axis * reach;
+  glm::dvec3 best(0.0);
+  double best_height = -std::numeric_limits<double>::infinity();
   constexpr int most_steps = 40;
   for (int step = 0; step < most_steps; ++step) {
+    if (glm::length(point) < 8.0 * reach) {
+      const glm::dvec3 valid = point - axis * way_down(planes, axis, side, point, 0.0);
+      if (glm::dot(axis, valid) > best_height) {
+        best_height = glm::dot(axis, valid);
+        best = valid;
+      }
+    }
     double worst = 1e-12 * reach;
     const glm::dvec4* entering = nullptr;
     for (const glm::dvec4& plane : planes) {
@@ -103,32 +125,18 @@ glm::dvec3 highest_point(std::span<const glm::dvec4> planes, const glm::dvec3& a
     weights[leaving] = least;
     normals[leaving] = side * glm::dvec3(*entering);
     offsets[leaving] = side * entering->w;
-    if (!(std::abs(glm::determinant(normals)) > 1e-9)) break;
-    const glm::dvec3 next = glm::inverse(glm::transpose(normals)) * -offsets;
-    // Nearly parallel planes meet far away, or nowhere that double can tell.
-    if (!(glm::length(next) < 8.0 * reach)) break;
-    point = next;
+    if (!(std::abs(glm::determinant(normals)) > 1e-12)) break;
+    point = glm::inverse(glm::transpose(normals)) * -offsets;
   }
-  return point;
-}
-
-/// Goes down along the axis until side * (n.p + d) <= -distance for all planes.
-glm::dvec3 lowered(std::span<const glm::dvec4> planes, const glm::dvec3& axis, double side,
-                   glm::dvec3 point, double distance) {
-  double down = 0.0;
-  for (const glm::dvec4& plane : planes) {
-    const double above = side * (glm::dot(glm::dvec3(plane), point) + plane.w) + distance;
-    if (above > 0.0) down = std::max(down, above / (side * glm::dot(glm::dvec3(plane), axis)));
-  }
-  return point - axis * down;
+  return best;
 }
 
 glm::dvec3 apex(std::span<const glm::dvec4> planes, const glm::dvec3& axis, double side,
                 double reach, double spare) {
-  const glm::dvec3 point =
-      lowered(planes, axis, side, highest_point(planes, axis, side, reach), 0.0);
+  const glm::dvec3 point = highest_point(planes, axis, side, reach);
   // Going down changes its length, by far less than twice.
-  return lowered(planes, axis, side, point, 2.0 * spare * (reach + glm::length(point)));
+  const double distance = 2.0 * spare * (reach + glm::length(point));
+  return point - axis * way_down(planes, axis, side, point, distance);
 }
 
 }  // namespace

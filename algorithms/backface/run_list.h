@@ -24,11 +24,11 @@ class RunList {
 
   /// Sets the bits of the triangles of runs [first, end).
   void mark(std::uint32_t first, std::uint32_t end, std::uint64_t* bits) const {
-    for (std::uint32_t i = first; i < end; ++i) {
-      const std::uint32_t triangle = runs_[i] / longest;
-      const std::uint64_t run = (std::uint64_t{2} << (runs_[i] % longest)) - 1;
-      bits[triangle / 64] |= run << (triangle % 64);
-    }
+    for (std::uint32_t i = first; i < end; ++i) bits[word(i)] |= mask(i);
+  }
+  /// Clears them.
+  void unmark(std::uint32_t first, std::uint32_t end, std::uint64_t* bits) const {
+    for (std::uint32_t i = first; i < end; ++i) bits[word(i)] &= ~mask(i);
   }
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(runs_.size()); }
@@ -36,6 +36,11 @@ class RunList {
   std::size_t bytes() const { return runs_.capacity() * sizeof(std::uint32_t); }
 
  private:
+  std::uint32_t word(std::uint32_t run) const { return runs_[run] / (longest * 64); }
+  std::uint64_t mask(std::uint32_t run) const {
+    return ((std::uint64_t{2} << (runs_[run] % longest)) - 1) << (runs_[run] / longest % 64);
+  }
+
   std::vector<std::uint32_t> runs_;  // first triangle * longest + count - 1
 };
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "algorithms/backface/back_bits.h"
+
 namespace vislab::backface_culling {
 namespace {
 

@@ -10,7 +10,7 @@
 //   the more so the farther the mesh is from its frame's origin; so may triangles without area.
 //   What is tested and what is kept whole is the same as for the lab's own methods (FacingCuller).
 // Cost: one square root, one division and a few products a meshlet; runs of triangles for the
-//   answer. 28 bytes a meshlet, and 5 a run.
+//   answer. 28 bytes a meshlet, and 4 a run.
 // Limits: keeps meshlets on strongly curved or coarse surfaces and at the silhouette.
 // Source: github.com/zeux/meshoptimizer 0.18, meshopt_buildMeshlets, meshopt_computeMeshletBounds
 //   (called, not copied).
