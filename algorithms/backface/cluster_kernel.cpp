@@ -61,9 +61,10 @@ struct Ways {
                                std::size_t lane) const {
     const Floats f;
     const auto chosen = [&](FloatVector way, std::size_t axis) HWY_ATTR {
-      return hn::Mul(hn::IfNegativeThenElse(way, hn::Load(f, negative[axis].data() + lane),
-                                            hn::Load(f, positive[axis].data() + lane)),
-                     way);
+      return hn::Mul(
+          hn::IfThenElse(hn::Gt(way, hn::Zero(f)), hn::Load(f, positive[axis].data() + lane),
+                         hn::Load(f, negative[axis].data() + lane)),
+          way);
     };
     return hn::Add(hn::Add(chosen(x, 0), chosen(y, 1)), chosen(z, 2));
   }

@@ -12,6 +12,11 @@ namespace {
 /// scaled plane the error of the unit plane stays below plane_error.
 constexpr double shortest_normal = 1e-6;
 
+/// Clusters that are culled from less than this of the places from which their first triangle is
+/// are divided on, down to a quarter of the size: they lie across edges, mostly.
+constexpr double least_part_culled = 0.6;
+constexpr std::uint32_t most_division = 4;
+
 constexpr std::size_t feature_count = 4;
 
 /// A triangle as a point: its normal, and its offset as an eye at the usual distance sees it.
@@ -47,6 +52,7 @@ class Builder {
     }
     const auto count = static_cast<std::uint32_t>(items_.size());
     size_ = std::clamp(count / least_clusters, 1U, settings.size);
+    smallest_ = std::max(1U, size_ / most_division);
     const auto reach = static_cast<float>(settings.eye_distance * frame.size);
     eyes_.extend(glm::vec3(-reach));
     eyes_.extend(glm::vec3(reach));
@@ -84,7 +90,6 @@ class Builder {
     clusters_.nodes.push_back({first, end, 0, 0});
     Made made;
     if (end - first <= size_) {
-      clusters_.first.push_back(first);
       for (std::uint32_t i = first; i < end; ++i) {
         clusters_.order.push_back(items_[i].triangle);
         ordered_planes_.push_back(planes_[items_[i].plane]);
@@ -92,7 +97,14 @@ class Builder {
       made.one_cluster = true;
       made.box = box_of(mesh_, frame_, std::span(clusters_.order).subspan(first));
       made.odds = odds_of(first, end, made.box);
-      return made;
+      const double alone = odds_of(first, first + 1, made.box).probability;
+      if (end - first <= smallest_ || made.odds.probability >= least_part_culled * alone) {
+        clusters_.first.push_back(first);
+        return made;
+      }
+      clusters_.order.resize(first);
+      ordered_planes_.resize(first);
+      made = {};
     }
     const std::uint32_t middle = split(first, end);
     const std::uint32_t left = static_cast<std::uint32_t>(clusters_.nodes.size());
@@ -125,6 +137,7 @@ class Builder {
   /// How many of `count` triangles go to the left: so many that clusters are full, and the nodes
   /// of trees with `width` children too.
   std::uint32_t left_count(std::uint32_t count) const {
+    if (count <= size_) return count / 2;
     constexpr std::uint64_t width = 16;
     std::uint64_t unit = size_;
     while (unit * width < count) unit *= width;
@@ -182,6 +195,7 @@ class Builder {
   const ClusterSettings& settings_;
   TriangleClusters& clusters_;
   std::uint32_t size_ = 1;
+  std::uint32_t smallest_ = 1;
   Aabb eyes_;  // where eyes may be
   double eyes_volume_ = 1.0;
   std::vector<Item> items_, rest_;
@@ -225,18 +239,6 @@ Aabb box_of(const Mesh& mesh, const MeshFrame& frame, std::span<const std::uint3
   box.min = glm::vec3(glm::dvec3(box.min) - frame.middle);
   box.max = glm::vec3(glm::dvec3(box.max) - frame.middle);
   return box;
-}
-
-void append_runs(std::span<const std::uint32_t> triangles, std::vector<TriangleRun>& runs) {
-  const std::size_t before = runs.size();
-  for (const std::uint32_t triangle : triangles) {
-    const bool follows = runs.size() > before && runs.back().first + runs.back().count == triangle;
-    if (follows) {
-      ++runs.back().count;
-    } else {
-      runs.push_back({triangle, 1});
-    }
-  }
 }
 
 }  // namespace vislab::backface_culling

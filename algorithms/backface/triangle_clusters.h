@@ -24,8 +24,8 @@
 namespace vislab::backface_culling {
 
 struct ClusterSettings {
-  /// Triangles in a cluster before any are joined, at least 1. Small meshes get smaller ones: so
-  /// many that there are least_clusters.
+  /// Triangles in a cluster before any are joined, at least 1. Smaller where a cluster would hardly
+  /// ever be culled, across sharp edges say, and in small meshes, so that there are least_clusters.
   std::uint32_t size = 16;
   /// Where eyes usually are: the distance from the middle of the mesh, as a multiple of its size
   /// (MeshFrame::size), at least 2. What is near and what is probable is measured with it.
@@ -76,14 +76,5 @@ std::vector<glm::dvec4> planes_in_order(const Mesh& mesh, const MeshFrame& frame
 
 /// Box around triangles, relative to the mesh's middle, rounded to float.
 Aabb box_of(const Mesh& mesh, const MeshFrame& frame, std::span<const std::uint32_t> triangles);
-
-/// Consecutive triangles of a mesh.
-struct TriangleRun {
-  std::uint32_t first = 0;
-  std::uint32_t count = 0;
-};
-
-/// Appends ascending triangles as runs.
-void append_runs(std::span<const std::uint32_t> triangles, std::vector<TriangleRun>& runs);
 
 }  // namespace vislab::backface_culling
