@@ -41,6 +41,15 @@ std::map<Culls, RightCells> candidates_of(const BlockSummary& block) {
   return kinds;
 }
 
+/// False if all of them submit what none does: where nothing can be left out (meshes that are not
+/// solid, to cullers of back faces) the least cost is that of noise.
+bool any_leaves_out(const BlockSummary& block, const RightCells& cells) {
+  const auto none = std::ranges::find(block.cells, "none", &CellSummary::canonical);
+  return none == block.cells.end() || std::ranges::any_of(cells, [&](const CellSummary* cell) {
+           return cell->submitted_triangles < none->submitted_triangles;
+         });
+}
+
 GuideRow row_of(const BlockSummary& block, const RightCells& cells) {
   const auto soonest = std::ranges::min_element(
       cells, {}, [](const CellSummary* cell) { return decision_us(*cell); });
@@ -100,7 +109,8 @@ std::vector<CullerGuide> make_guides(const std::vector<BlockSummary>& blocks) {
     // Times of different machines have no common order.
     if (block.machines.size() > 1) continue;
     for (auto& [culls, cells] : candidates_of(block)) {
-      if (cells.size() >= fewest_methods) kinds[culls].emplace_back(&block, std::move(cells));
+      if (cells.size() < fewest_methods || !any_leaves_out(block, cells)) continue;
+      kinds[culls].emplace_back(&block, std::move(cells));
     }
   }
   std::vector<CullerGuide> guides;

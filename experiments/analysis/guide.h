@@ -51,7 +51,7 @@ struct CullerGuide {
 };
 
 /// One guide for each kind of culling, whatever the families, from the blocks that have at least
-/// three candidates of that kind. A candidate is a method (no chain, no anchor, nothing declared
+/// three candidates of that kind, one of which at least leaves something out. A candidate is a method (no chain, no anchor, nothing declared
 /// erroneous) that was measured free of errors. Where nothing is drawn, only methods that submit
 /// at most 1 % more triangles than the fewest are: deciding soon is no merit in one that keeps
 /// everything.

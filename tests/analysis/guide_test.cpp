@@ -124,6 +124,17 @@ TEST(Guide, NothingMeasuredGivesNoGuide) {
   EXPECT_TRUE(make_guides(none).empty());
 }
 
+TEST(Guide, SaysNothingOfScenesInWhichNothingIsLeftOut) {
+  std::vector<CellSummary> cells{method("a.a", 9.0, 5.0), method("a.b", 9.0, 4.0),
+                                 method("a.c", 9.0, 3.0), method("none", 0.0, 10.0)};
+  cells.back().anchor = true;
+  for (CellSummary& cell : cells) cell.submitted_triangles = 100.0;
+  std::vector<BlockSummary> blocks{block_with("s", cells)};
+  EXPECT_TRUE(make_guides(blocks).empty());
+  blocks[0].cells[0].submitted_triangles = 99.0;
+  EXPECT_EQ(make_guides(blocks).size(), 1U);
+}
+
 TEST(Published, OwnRatiosAreThoseOfTheRowsSceneAndMethods) {
   const std::vector<BlockSummary> blocks{
       block_with("s", {method("frustum.a", 9.0, 5.0), method("frustum.b", 9.0, 2.0)})};

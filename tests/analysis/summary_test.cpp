@@ -147,6 +147,7 @@ TEST(Summary, AccuracyAddsUpOverTheFrames) {
   judged.cell.culls = Culls::outside_frustum;
   const CellSummary cell = only_cell(judged);
   EXPECT_DOUBLE_EQ(cell.metric("excused_px"), 4.0);
+  EXPECT_DOUBLE_EQ(cell.metric("disputed_image_px"), 3.0);
   EXPECT_DOUBLE_EQ(cell.metric("disputed_px"), 21.0) << "the floor, not what was lost";
   EXPECT_TRUE(cell.judged);
   EXPECT_TRUE(cell.drawn);
