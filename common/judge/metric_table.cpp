@@ -16,6 +16,8 @@ std::span<const Metric> metrics() {
       Metric{"false_jittered", "samples", lower,
              "undisputed jittered samples whose triangle was left out"},
       Metric{"image_px", "pixels", lower, "undisputed ids that differ from the unculled image"},
+      Metric{"disputed_image_px", "pixels", lower,
+             "disputed ids that differ from the unculled image: excused, not false"},
       Metric{"excused_px", "samples", lower,
              "disputed samples whose triangle was left out: excused, not false"},
       Metric{"disputed_px", "pixels", neither,
