@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "algorithms/backface/normal_cone.h"
-#include "algorithms/backface/triangle_clusters.h"
 #include "common/geometry/rounding.h"
 
 namespace vislab::backface_culling {
@@ -106,6 +105,33 @@ void ClusterCones::add(std::span<const glm::dvec4> planes, std::span<const glm::
     at(squared_sine) = squared(cone.sine);
   }
   ++count_;
+}
+
+ClusterSettings cone_clusters(std::uint32_t size) {
+  ClusterSettings settings;
+  settings.size = size;
+  return settings;
+}
+
+ClusterCones cones_of(const Mesh& mesh, const MeshFrame& frame, const TriangleClusters& clusters,
+                      ConeForm form) {
+  ClusterCones cones(form, frame);
+  std::vector<glm::dvec4> planes;
+  std::vector<glm::dvec3> vertices;
+  for (std::uint32_t cluster = 0; cluster < clusters.tested; ++cluster) {
+    planes.clear();
+    vertices.clear();
+    for (const std::uint32_t triangle : clusters.of(cluster)) {
+      planes.push_back(unit_plane(mesh, frame, triangle));
+      if (form == ConeForm::apex) continue;
+      for (int corner = 0; corner < 3; ++corner) {
+        const std::uint32_t vertex = mesh.triangles[triangle][corner];
+        vertices.push_back(glm::dvec3(mesh.positions[vertex]) - frame.middle);
+      }
+    }
+    cones.add(planes, vertices);
+  }
+  return cones;
 }
 
 ConeEye::ConeEye(const MeshEye& eye, double unit) : perspective(eye.position.w != 0.0) {

@@ -19,7 +19,7 @@
 #include <span>
 #include <vector>
 
-#include "algorithms/backface/mesh_eye.h"
+#include "algorithms/backface/triangle_clusters.h"
 
 namespace vislab::backface_culling {
 
@@ -67,6 +67,13 @@ class ClusterCones {
   std::vector<Block<7>> apexes_;   // ConeForm::apex
   std::vector<Block<8>> spheres_;  // ConeForm::sphere
 };
+
+/// What the clusters of cones are made with.
+ClusterSettings cone_clusters(std::uint32_t size = 32);
+
+/// The cones of the clusters below `tested`. O(triangles) expected.
+ClusterCones cones_of(const Mesh& mesh, const MeshFrame& frame, const TriangleClusters& clusters,
+                      ConeForm form);
 
 /// The eye as the kernel takes it, in units of the cones.
 struct ConeEye {

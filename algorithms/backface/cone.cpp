@@ -17,7 +17,6 @@
 #include "algorithms/backface/cluster_cones.h"
 #include "algorithms/backface/cluster_runs.h"
 #include "algorithms/backface/facing_culler.h"
-#include "algorithms/backface/triangle_clusters.h"
 #include "common/culler/registry.h"
 
 namespace vislab {
@@ -77,25 +76,8 @@ class Cone : public FacingCuller {
 
   void add_mesh(MeshId id, const Mesh& mesh, const MeshFrame& frame, const BuildContext&) override {
     meshes_.resize(id + 1);
-    ClusterSettings settings;
-    settings.size = size_;
-    const TriangleClusters clusters = make_clusters(mesh, frame, settings);
-    ClusterCones cones(form_, frame);
-    std::vector<glm::dvec4> planes;
-    std::vector<glm::dvec3> vertices;
-    for (std::uint32_t cluster = 0; cluster < clusters.tested; ++cluster) {
-      planes.clear();
-      vertices.clear();
-      for (const std::uint32_t triangle : clusters.of(cluster)) {
-        planes.push_back(unit_plane(mesh, frame, triangle));
-        if (form_ == ConeForm::apex) continue;
-        for (int corner = 0; corner < 3; ++corner) {
-          const std::uint32_t vertex = mesh.triangles[triangle][corner];
-          vertices.push_back(glm::dvec3(mesh.positions[vertex]) - frame.middle);
-        }
-      }
-      cones.add(planes, vertices);
-    }
+    const TriangleClusters clusters = make_clusters(mesh, frame, cone_clusters(size_));
+    ClusterCones cones = cones_of(mesh, frame, clusters, form_);
     meshes_[id].emplace(std::move(cones), ClusterRuns(clusters), mesh.triangles.size());
   }
 

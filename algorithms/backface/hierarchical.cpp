@@ -21,6 +21,7 @@
 // Source: Kumar, Manocha, Garrett and Lin 1996, Hierarchical Back-Face Culling; Kowalka
 // 2016, 2.2.2.
 
+#include "algorithms/backface/cluster_cones.h"
 #include "algorithms/backface/facing_culler.h"
 #include "algorithms/backface/tree_memory.h"
 #include "common/culler/registry.h"
@@ -93,9 +94,7 @@ class Hierarchical : public FacingCuller {
 
   void add_mesh(MeshId id, const Mesh& mesh, const MeshFrame& frame, const BuildContext&) override {
     trees_.resize(id + 1);
-    ClusterSettings settings;
-    settings.size = size_;
-    trees_[id].emplace(mesh, frame, settings);
+    trees_[id].emplace(mesh, frame, cone_clusters(size_));
     back_.resize(std::max(back_.size(), words_of(mesh.triangles.size())));
   }
 

@@ -148,23 +148,8 @@ Scene scene_of(Mesh mesh, const std::vector<glm::dmat4x3>& transforms = {glm::dm
 ClusterCones cones_of(const Scene& scene, std::uint32_t size, ConeForm form) {
   const Mesh& mesh = scene.meshes[0];
   const MeshFrame frame(mesh);
-  ClusterSettings settings;
-  settings.size = size;
-  const TriangleClusters clusters = make_clusters(mesh, frame, settings);
-  ClusterCones cones(form, frame);
-  for (std::uint32_t cluster = 0; cluster < clusters.tested; ++cluster) {
-    std::vector<glm::dvec4> planes;
-    std::vector<glm::dvec3> vertices;
-    for (const std::uint32_t triangle : clusters.of(cluster)) {
-      planes.push_back(unit_plane(mesh, frame, triangle));
-      for (int corner = 0; corner < 3; ++corner) {
-        vertices.push_back(glm::dvec3(mesh.positions[mesh.triangles[triangle][corner]]) -
-                           frame.middle);
-      }
-    }
-    cones.add(planes, vertices);
-  }
-  return cones;
+  return backface_culling::cones_of(mesh, frame, make_clusters(mesh, frame, cone_clusters(size)),
+                                    form);
 }
 
 TEST(ClusterCones, GiveTheSameBitsOnEveryInstructionSetAsOneByOne) {

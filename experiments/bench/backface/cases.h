@@ -11,6 +11,9 @@ namespace vislab {
 /// cullers and chains against backface.polygon; building and memory.
 void add_cluster_cases(std::vector<BenchCase>& cases);
 
+/// Cones of normals on the same spheres; what is saved by remembering verdicts from frame to frame.
+void add_cone_cases(std::vector<BenchCase>& cases);
+
 /// Normal masks: speed of look-ups, and the shares that were predicted.
 void add_mask_cases(std::vector<BenchCase>& cases);
 
