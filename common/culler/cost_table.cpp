@@ -9,7 +9,7 @@ CostTable CostTable::typical() {
   table.triangle = Cost::exactly(250.0);
   table.draw = Cost::exactly(260.0);
   table.piece = Cost::exactly(200.0);
-  table.cluster_test = Cost::exactly(5.0);
+  table.cluster_test = Cost::exactly(1.0);
   return table;
 }
 
