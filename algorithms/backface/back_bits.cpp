@@ -1,35 +1,33 @@
 #include "algorithms/backface/back_bits.h"
 
-#include <algorithm>
-
 namespace vislab::backface_culling {
-namespace {
-
-/// First position in [from, end) whose bit is `set`; end if there is none.
-std::uint32_t find(std::span<const std::uint64_t> bits, std::uint32_t from, std::uint32_t end,
-                   bool set) {
-  if (from >= end) return end;
-  const std::uint64_t flip = set ? 0 : ~std::uint64_t{0};
-  std::uint32_t word = from / 64;
-  std::uint64_t rest = (bits[word] ^ flip) & (~std::uint64_t{0} << (from & 63U));
-  while (rest == 0) {
-    if (++word * 64 >= end) return end;
-    rest = bits[word] ^ flip;
-  }
-  return std::min(end, word * 64 + static_cast<std::uint32_t>(std::countr_zero(rest)));
-}
-
-}  // namespace
 
 void append_kept(const TriangleRange& offered, std::span<const std::uint64_t> back,
                  std::uint32_t base, std::vector<TriangleRange>& kept) {
-  const std::uint32_t end = offered.first - base + offered.count;
-  std::uint32_t first = find(back, offered.first - base, end, false);
-  while (first < end) {
-    const std::uint32_t last = find(back, first, end, true);
-    kept.push_back({offered.object, base + first, last - first});
-    first = find(back, last, end, false);
+  if (offered.count == 0) return;
+  const std::uint32_t first = offered.first - base;
+  const std::uint32_t end = first + offered.count;
+  const std::uint32_t last_word = (end - 1) / 64;
+  std::uint32_t start = 0;
+  bool open = false;
+  std::uint64_t before = 0;  // was the triangle before this word kept?
+  for (std::uint32_t word = first / 64; word <= last_word; ++word) {
+    std::uint64_t now = ~back[word];
+    if (word == first / 64) now &= ~std::uint64_t{0} << (first % 64);
+    if (word == last_word) now &= ~std::uint64_t{0} >> (63 - (end - 1) % 64);
+    // Runs begin and end in turn where a triangle differs from the one before it.
+    for (std::uint64_t turns = now ^ ((now << 1U) | before); turns != 0; turns &= turns - 1) {
+      const std::uint32_t at = word * 64 + static_cast<std::uint32_t>(std::countr_zero(turns));
+      if (open) {
+        kept.push_back({offered.object, base + start, at - start});
+      } else {
+        start = at;
+      }
+      open = !open;
+    }
+    before = now >> 63U;
   }
+  if (open) kept.push_back({offered.object, base + start, end - start});
 }
 
 }  // namespace vislab::backface_culling
