@@ -68,22 +68,29 @@ void MaskMarker::mark(std::uint32_t first, std::uint32_t count, std::uint64_t* b
 
 /// Words of the whole mesh's answer.
 void MaskMarker::mark_words(std::uint32_t first_word, std::uint32_t words, std::uint64_t* back) {
-  static_assert(MaskedMesh::block_size == 64);
-  // So many rectangles at a time have room among the masks.
+  static_assert(MaskedMesh::block_size % 64 == 0);
+  constexpr std::uint32_t words_in_block = MaskedMesh::block_size / 64;
+  // The rectangles of so many words at a time have room among the masks.
   constexpr std::uint32_t most = 1024;
   rectangles_.resize(most);
   numbers_.resize(most);
   for (std::uint32_t done = 0; done < words; done += most) {
-    const std::uint32_t block = first_word + done;
+    const std::uint32_t first = first_word + done;
     const std::uint32_t count = std::min(most, words - done);
-    find_rectangles(rows_, mesh_->blocks(), block, count, rectangles_.data());
-    masks_->make_room(count);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const bool again = i > 0 && rectangles_[i] == rectangles_[i - 1];
-      numbers_[i] = again ? numbers_[i - 1] : masks_->number_of(rectangles_[i]);
+    const std::uint32_t first_block = first / words_in_block;
+    const std::uint32_t blocks = (first + count - 1) / words_in_block - first_block + 1;
+    find_rectangles(rows_, mesh_->blocks(), first_block, blocks, rectangles_.data());
+    masks_->make_room(blocks);
+    std::uint16_t number = 0;
+    std::uint32_t word = 0;
+    for (std::uint32_t block = 0; block < blocks; ++block) {
+      const bool again = block > 0 && rectangles_[block] == rectangles_[block - 1];
+      if (!again) number = masks_->number_of(rectangles_[block]);
+      const std::uint32_t end = std::min((first_block + block + 1) * words_in_block - first, count);
+      while (word < end) numbers_[word++] = number;
     }
-    look_up_words(masks_->masks(), numbers_.data(), mesh_->offsets() + std::size_t{64} * block,
-                  mesh_->bits() + std::size_t{64} * block, count, back + done);
+    look_up_words(masks_->masks(), numbers_.data(), mesh_->offsets() + std::size_t{64} * first,
+                  mesh_->bits() + std::size_t{64} * first, count, back + done);
   }
 }
 

@@ -12,8 +12,9 @@ namespace vislab::backface_culling {
 /// The classes of a mesh's triangles.
 class MaskedMesh {
  public:
-  /// Triangles that share a rectangle of the view: a word of the answer.
-  static constexpr std::uint32_t block_size = 64;
+  /// Triangles that share a rectangle of the view, whole words of the answer. Blocks of half the
+  /// size find up to a tenth more on scanned meshes and take a third longer.
+  static constexpr std::uint32_t block_size = 128;
 
   MaskedMesh() = default;
   /// O(triangles).

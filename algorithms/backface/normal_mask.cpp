@@ -5,7 +5,7 @@
 //   into n x n squares. Each frame, the classes are found whose normals all face away wherever in
 //   the view their triangle is: those that do so along all four corners of the view. What is left
 //   of the test of a triangle is one look-up. The wider the view, the fewer classes are certain;
-//   so the view is cut into sectors with masks of their own. Every block of 64 consecutive
+//   so the view is cut into sectors with masks of their own. Every block of 128 consecutive
 //   triangles is tested with the mask of the sectors that it is seen in: what the four corners of
 //   its rectangle have in common, which for a block in one sector is that sector's mask.
 // Guarantee: conservative. A class counts only if all four corners of its square face away along
@@ -16,11 +16,13 @@
 // Cost: O(candidate triangles) look-ups, 16 to 64 at a time; one placing a block; and for each
 //   linear part of transforms up to (sectors + 1)^2 tests of all 6 (n + 1)^2 corners of classes,
 //   about 0.5 us each. Memory: 2 bytes a triangle of a mesh and 24 a block.
-// Limits: for normals in all directions finds .62 .49 .36 .20 .06 of the back faces in views of 30,
-//   45, 60, 90, 120 degrees with one sector and n = 16; .85 .82 .78 .72 .65 with 4 x 4 and .89 .88
-//   .86 .82 .80 with 8 x 8. Small objects that are turned each in its own way pay for masks of
-//   their own. Triangles that are stored far from their neighbours make blocks that straddle
-//   sectors.
+// Limits: n is 18 at most, because two bytes tell no more classes apart. For normals in all
+//   directions finds .62 .48 .36 .18 .07 of the back faces in views of 30, 45, 60, 90, 120 degrees
+//   with one sector and n = 16; .86 .82 .78 .71 .65 with 4 x 4 and .90 .88 .86 .82 .79 with 8 x 8.
+//   Where corners of the view fall exactly on corners of classes, as in a view of 90 degrees along
+//   an axis of the mesh, these are edge-on and decide nothing (.16 with one sector). Small objects
+//   that are turned each in its own way pay for masks of their own. Triangles that are stored far
+//   from their neighbours make blocks that straddle sectors.
 // Source: Zhang and Hoff 1997, "Fast backface culling using normal masks"; Zachmann,
 //   Computer-Graphik 2, SS 2012, slides 13-18.
 
@@ -116,7 +118,8 @@ CullerInfo describe() {
                     "squares along an edge of the direction cube, 6 n^2 classes of normals; not "
                     "more than 18, because a triangle's two bytes (one of 256 bytes, one of its 8 "
                     "bits) tell 2,048 classes apart; coarse classes are seldom behind as a whole"),
-      Spec::integer("sectors", defaults.sectors, 1, SectorLines::most_sectors, "", Spec::Stage::build,
+      Spec::integer("sectors", defaults.sectors, 1, SectorLines::most_sectors, "",
+                    Spec::Stage::build,
                     "parts of the view a side, each with its own mask: 1 is the method as "
                     "published, which finds little in wide views; more find more, and cost a test "
                     "of all classes for each corner"),

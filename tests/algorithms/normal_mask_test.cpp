@@ -226,7 +226,7 @@ TEST(NormalMask, TakesTwoBytesATriangleAndALittleForBlocks) {
   const auto triangles = static_cast<double>(scene.triangle_count());
   const auto bytes = static_cast<double>(run.culler().bytes());
   EXPECT_GE(bytes, 2.0 * triangles);
-  EXPECT_LE(bytes, (2.0 + 24.0 / 64.0) * triangles + 1000.0);
+  EXPECT_LE(bytes, (2.0 + 24.0 / 128.0) * triangles + 1000.0);
 }
 
 TEST(MaskKernel, AnswersTheSameWithEveryInstructionSetAndAnywhere) {
