@@ -37,7 +37,7 @@ struct TreeEye {
 /// The tree of one mesh. Immutable.
 class ConeTree {
  public:
-  enum class Facing : std::uint8_t { unknown, back, front, mixed };
+  enum class Facing : std::uint8_t { back, front, mixed };
 
   struct Node {
     NormalCone cone;

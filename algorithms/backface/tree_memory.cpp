@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "algorithms/backface/back_bits.h"
 
@@ -40,7 +41,7 @@ std::span<const std::uint64_t> TreeMemory::mark(const ConeTree& tree, const Tree
   if (nodes_.empty()) return back_;
   if (!known_ || eye.perspective != eye_.perspective) {
     std::ranges::fill(back_, 0);
-    forget(nodes_[0]);
+    nodes_[0] = Node();
     way_ = 0.0;
     known_ = true;
   } else if (const double way = eye_.way_to(eye); way > 0.0) {
@@ -54,8 +55,23 @@ std::span<const std::uint64_t> TreeMemory::mark(const ConeTree& tree, const Tree
   return back_;
 }
 
-void TreeMemory::forget(Node& node) const {
-  node = {-infinite, -infinite, 0, ConeTree::Facing::unknown};
+void TreeMemory::change(const ConeTree& tree, std::uint32_t index, ConeTree::Facing facing) {
+  using Facing = ConeTree::Facing;
+  const ConeTree::Node& node = tree.nodes()[index];
+  const Facing before = std::exchange(nodes_[index].facing, facing);
+  if (facing == Facing::back) {
+    tree.runs().set(node.first, node.end, back_);
+  } else if (node.is_leaf()) {
+    if (before == Facing::back) tree.runs().clear(node.first, node.end, back_);
+  } else if (facing == Facing::front) {
+    tree.runs().clear(node.first, node.end, back_);
+  } else {
+    // The bits say of the children what they said of the whole.
+    for (const std::uint32_t child : {node.left, node.right}) {
+      nodes_[child] = Node();
+      nodes_[child].facing = before;
+    }
+  }
 }
 
 void TreeMemory::visit(const ConeTree& tree, const TreeEye& eye, std::uint32_t index,
@@ -68,17 +84,7 @@ void TreeMemory::visit(const ConeTree& tree, const TreeEye& eye, std::uint32_t i
     counts.tested += node.cone.exists() ? 1 : 0;
     here.until = std::nextafter(way_ + verdict.slack, -infinite);
     if (verdict.slack == infinite) here.until = infinite;
-    if (verdict.facing != here.facing) {
-      here.facing = verdict.facing;
-      if (here.facing == ConeTree::Facing::back) {
-        tree.runs().set(node.first, node.end, back_);
-      } else if (here.facing == ConeTree::Facing::front || node.is_leaf()) {
-        tree.runs().clear(node.first, node.end, back_);
-      } else {
-        forget(nodes_[node.left]);
-        forget(nodes_[node.right]);
-      }
-    }
+    if (verdict.facing != here.facing) change(tree, index, verdict.facing);
   }
   here.below_until = here.until;
   here.below = node.cone.exists() ? 1 : 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -26,7 +27,7 @@ void mark_tree(const ConeTree& tree, const TreeEye& eye, std::span<std::uint64_t
 /// until the sum is s + r, which is at least the distance between the two eyes; a subtree holds
 /// until the first of its verdicts that count ends. The bits of triangles are kept, and only what
 /// changes is written. The bits are those of mark_tree, always.
-/// 28 bytes a node and a bit a triangle.
+/// 24 bytes a node and a bit a triangle.
 class TreeMemory {
  public:
   explicit TreeMemory(const ConeTree& tree);
@@ -43,14 +44,17 @@ class TreeMemory {
 
  private:
   struct Node {
-    double until = 0.0;        // the sum up to which this node's verdict holds
-    double below_until = 0.0;  // and all that count at and below it
-    std::uint32_t below = 0;   // verdicts of cones that count at and below it
-    ConeTree::Facing facing = ConeTree::Facing::unknown;
+    /// The sum up to which this node's verdict holds, and all that count at and below it.
+    double until = -std::numeric_limits<double>::infinity();
+    double below_until = -std::numeric_limits<double>::infinity();
+    std::uint32_t below = 0;  // verdicts of cones that count at and below it
+    /// The last verdict; of a node that has none, what its bits say as they are.
+    ConeTree::Facing facing = ConeTree::Facing::front;
   };
 
   void visit(const ConeTree& tree, const TreeEye& eye, std::uint32_t index, WalkCounts& counts);
-  void forget(Node& node) const;
+  /// A node gets another verdict: the bits below it, or what its children start from.
+  void change(const ConeTree& tree, std::uint32_t index, ConeTree::Facing facing);
 
   std::vector<Node> nodes_;
   std::vector<std::uint64_t> back_;
