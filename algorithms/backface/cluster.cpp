@@ -43,7 +43,7 @@ CullerInfo describe() {
   info.culls = Culls::back_faces;
   info.space = Space::object;
   info.stage = PipelineStage::geometry;
-  info.parameters = cluster_parameters();
+  info.parameters = cluster_parameters(flat_cluster_size);
   info.cost = "O(clusters of shown objects) tests, 16 at a time, and O(runs of culled triangles)";
   info.limits =
       "Keeps clusters that are partly seen from behind: on coarse meshes, with large clusters and "

@@ -4,11 +4,11 @@
 
 namespace vislab::backface_culling {
 
-std::vector<ParameterSpec> cluster_parameters() {
+std::vector<ParameterSpec> cluster_parameters(std::uint32_t size) {
   using Stage = ParameterSpec::Stage;
   return {
       ParameterSpec::integer(
-          "size", ClusterSettings().size, 1, 65536, "triangles", Stage::build,
+          "size", size, 1, 65536, "triangles", Stage::build,
           "triangles in a cluster before the cost model joins any; small meshes get smaller ones. "
           "Larger: fewer tests and less memory, but fewer clusters face one way"),
       ParameterSpec::choice(

@@ -41,7 +41,7 @@ CullerInfo describe() {
   info.culls = Culls::back_faces;
   info.space = Space::object;
   info.stage = PipelineStage::geometry;
-  info.parameters = cluster_parameters();
+  info.parameters = cluster_parameters(tree_cluster_size);
   info.cost =
       "O(nodes seen from both sides), 16 children at a time, and O(runs of culled triangles)";
   info.limits =

@@ -36,7 +36,7 @@ struct ClusterSettings {
   JoinRule join = JoinRule::derived;
   Origin origin = Origin::centre;  // of the bounds by which it is judged what joins
 };
-inline constexpr std::uint32_t least_clusters = 64;
+inline constexpr std::uint32_t least_clusters = 256;
 
 /// A partition of a mesh's triangles, and the tree of splits that made it.
 struct TriangleClusters {
