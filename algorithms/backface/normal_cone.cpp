@@ -166,7 +166,8 @@ glm::dvec3 merged_axis(const NormalCone& a, const NormalCone& b) {
   const double length = glm::length(sideways);
   if (!(length > 1e-12)) return a.axis;
   const double turn = 0.5 * (between + angle_b - angle_a);
-  return std::cos(turn) * a.axis + std::sin(turn) * (sideways / length);
+  // Rounded, so that it does not depend on the last digit of a machine's sines.
+  return glm::dvec3(glm::vec3(std::cos(turn) * a.axis + std::sin(turn) * (sideways / length)));
 }
 
 glm::dvec3 apex_behind(std::span<const glm::dvec4> planes, const glm::dvec3& axis, double reach,
