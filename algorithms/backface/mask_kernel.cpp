@@ -1,7 +1,7 @@
-// Compiled once for each instruction set, by Highway; also for AVX-512 with byte permutations.
+// Compiled once for each instruction set, by Highway. Byte permutations of AVX-512 have a file of
+// their own: another choice of instruction sets for one file alone would confuse Highway's tables.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "algorithms/backface/mask_kernel.cpp"
-#define HWY_WANT_AVX3_DL
 #include "algorithms/backface/mask_kernel.h"
 
 #include <hwy/foreach_target.h>
@@ -11,35 +11,14 @@
 #include <algorithm>
 #include <cstring>
 
+#include "algorithms/backface/mask_permute.h"
+#include "common/simd/simd_target.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace vislab::backface_culling::HWY_NAMESPACE {
 namespace {
 
-#if HWY_TARGET == HWY_AVX3_DL
-
-/// A mask in registers.
-class Table {
- public:
-  HWY_INLINE void load(const BackMask& mask) {
-    low_0_ = _mm512_load_si512(mask.bytes.data());
-    low_1_ = _mm512_load_si512(mask.bytes.data() + 64);
-    high_0_ = _mm512_load_si512(mask.bytes.data() + 128);
-    high_1_ = _mm512_load_si512(mask.bytes.data() + 192);
-  }
-  HWY_INLINE std::uint64_t word(const std::uint8_t* offsets, const std::uint8_t* bits) const {
-    const __m512i offset = _mm512_loadu_si512(offsets);
-    // The lowest 7 bits choose among the 128 bytes of two registers.
-    const __m512i low = _mm512_permutex2var_epi8(low_0_, offset, low_1_);
-    const __m512i high = _mm512_permutex2var_epi8(high_0_, offset, high_1_);
-    const __m512i byte = _mm512_mask_blend_epi8(_mm512_movepi8_mask(offset), low, high);
-    return _mm512_test_epi8_mask(byte, _mm512_loadu_si512(bits));
-  }
-
- private:
-  __m512i low_0_, low_1_, high_0_, high_1_;
-};
-
-#elif HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4 || \
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4 || \
     HWY_TARGET == HWY_SSSE3
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -196,13 +175,21 @@ void count_above(const SidePoints& points, std::size_t count, float limit, std::
 
 void look_up_words(const BackMask* masks, const std::uint16_t* numbers, const std::uint8_t* offsets,
                    const std::uint8_t* bits, std::size_t words, std::uint64_t* back) {
+  if (simd_byte_permutations()) {
+    permute_each(masks, numbers, offsets, bits, words, back);
+    return;
+  }
   HWY_DYNAMIC_DISPATCH(look_up_each)(masks, numbers, offsets, bits, words, back);
 }
 
 void look_up(const BackMask& mask, const std::uint8_t* offsets, const std::uint8_t* bits,
              std::size_t count, std::uint64_t* back) {
   const std::size_t words = (count + 63) / 64;
-  HWY_DYNAMIC_DISPATCH(look_up_all)(mask, offsets, bits, words, back);
+  if (simd_byte_permutations()) {
+    permute_all(mask, offsets, bits, words, back);
+  } else {
+    HWY_DYNAMIC_DISPATCH(look_up_all)(mask, offsets, bits, words, back);
+  }
   if (count % 64 != 0) back[words - 1] &= ~std::uint64_t{0} >> (64 - count % 64);
 }
 

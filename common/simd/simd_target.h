@@ -13,6 +13,10 @@ std::string simd_target();
 /// Names of those that this processor supports and the kernels are compiled for, best first.
 std::vector<std::string> simd_targets();
 
+/// May kernels use the byte permutations of AVX-512 (VBMI), which are no instruction set of
+/// Highway's own here? Only if the processor has them and no SimdTargetScope lives. O(1).
+bool simd_byte_permutations();
+
 /// While it lives, all kernels run with one instruction set. For tests and benchmarks: not
 /// for use while another thread runs a kernel, and not nested.
 class SimdTargetScope {
