@@ -25,11 +25,13 @@ std::string family_of(const std::string& chain) {
   return chain.substr(0, chain.find_first_of(".["));
 }
 
-/// The least over of a method of the same family that is right on the block; none: null.
+/// The least over of a method of the same family that promises to be right, and is so on the block;
+/// none: null.
 const CellSummary* right_one(const BlockSummary& block, const CellSummary& wrong) {
   const CellSummary* best = nullptr;
   for (const CellSummary& cell : block.cells) {
-    if (cell.anchor || cell.guarantee == Guarantee::erroneous || !is_free_of_errors(cell)) continue;
+    if (cell.anchor || !is_free_of_errors(cell)) continue;
+    if (cell.guarantee > Guarantee::image_exact) continue;
     if (family_of(cell.canonical) != family_of(wrong.canonical)) continue;
     if (cell.canonical.find('>') != std::string::npos) continue;
     if (best == nullptr || cell.over < best->over) best = &cell;

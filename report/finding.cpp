@@ -46,7 +46,9 @@ Finding find_undrawn(const BlockSummary& block) {
   for (const CellSummary& cell : block.cells) {
     if (cell.anchor || cell.status != ResultCell::Status::done) continue;
     if (!cell.judged || std::isnan(cell.over)) continue;
-    const CellSummary*& place = is_free_of_errors(cell) ? finding.best : finding.erring;
+    const bool is_clean = is_free_of_errors(cell);
+    if (is_clean && cell.guarantee == Guarantee::erroneous) continue;
+    const CellSummary*& place = is_clean ? finding.best : finding.erring;
     place = lesser(place, &cell, over);
   }
   if (finding.best != nullptr && finding.erring != nullptr &&
@@ -80,7 +82,9 @@ Finding find(const BlockSummary& block) {
       finding.oracle = lesser(finding.oracle, &cell, time_ratio);
     }
     if (cell.anchor) continue;
-    const CellSummary*& place = is_free_of_errors(cell) ? finding.best : finding.erring;
+    const bool is_clean = is_free_of_errors(cell);
+    if (is_clean && cell.guarantee == Guarantee::erroneous) continue;
+    const CellSummary*& place = is_clean ? finding.best : finding.erring;
     place = lesser(place, &cell, time_ratio);
   }
   if (finding.best != nullptr) {

@@ -28,7 +28,8 @@ struct Finding {
   const CellSummary* erring = nullptr;
 };
 
-/// Pointers lead into `block`. Only methods count, not the anchors.
+/// Pointers lead into `block`. Only methods count, not the anchors. One that is wrong on purpose is
+/// never the best, even where its mistake does no harm.
 Finding find(const BlockSummary& block);
 
 /// The finding as fields for templates/verdict.md. `scene` is its name as Markdown.

@@ -68,7 +68,11 @@ class SweepChart {
     return limit;
   }
 
-  std::string y_title() const { return result_.sweep.figure_name(); }
+  /// Short: the text beside the chart says what ratios are to.
+  std::string y_title() const {
+    const SweepLimit& limit = result_.sweep.limit;
+    return limit.against ? limit.metric + ", ratio" : result_.sweep.figure_name();
+  }
 
   /// How many values apart the labels stand, so that labels do not run into each other.
   static std::size_t values_per_label(const SweepDial& dial) {

@@ -1,5 +1,7 @@
 #include "report/sweep_section.h"
 
+#include <algorithm>
+
 #include "report/format.h"
 #include "report/sweep_chart.h"
 
@@ -32,12 +34,21 @@ std::string figure_text(const Sweep& sweep, const SweepVerdict& verdict,
   return format_number(verdict.points[*value].figure) + " at " + in_unit(sweep.dial, *value);
 }
 
-std::string expectation_text(const SweepVerdict& verdict) {
+/// As the dial has it, if it is one of its values: a dial may be turned to 1e-8.
+std::string bound_text(const SweepDial& dial, double bound) {
+  const auto found = std::ranges::find(dial.values, bound);
+  if (found == dial.values.end()) return format_number(bound);
+  return markdown_text(dial.texts[static_cast<std::size_t>(found - dial.values.begin())]);
+}
+
+std::string expectation_text(const SweepDial& dial, const SweepVerdict& verdict) {
   if (!verdict.expectation) return "–";
   const SweepExpectation& expected = *verdict.expectation;
+  const std::string low = bound_text(dial, expected.low);
+  const std::string high = bound_text(dial, expected.high);
   const std::string range = expected.never ? "never breaks"
-                                           : "breaks from " + format_number(expected.low) + " to " +
-                                                 format_number(expected.high);
+                            : low == high  ? "breaks at " + low
+                                           : "breaks from " + low + " to " + high;
   return range + ": " + markdown_text(expected.because) + " (" + markdown_text(expected.source) +
          ")";
 }
@@ -78,7 +89,7 @@ Fields method_row(const Sweep& sweep, const SweepVerdict& verdict) {
   row.values["breaks"] = break_text(sweep, verdict);
   row.values["worst"] = figure_text(sweep, verdict, verdict.worst);
   row.values["best"] = figure_text(sweep, verdict, verdict.best);
-  row.values["expected"] = expectation_text(verdict);
+  row.values["expected"] = expectation_text(sweep.dial, verdict);
   row.values["agreement"] = agreement_text(verdict);
   return row;
 }

@@ -41,6 +41,19 @@ TEST(SweepSection, SaysWhereEachMethodBreaksAndWhatWasExpected) {
   EXPECT_EQ(rows[1].values.at("agreement"), "–");
 }
 
+TEST(SweepSection, NamesExpectedValuesAsTheDialHasThem) {
+  SweepResult result = fabricated_sweep();
+  result.sweep.dial = {"tilt", "rad", {0.1, 1e-3, 1e-6, 1e-8}, {"0.1", "0.001", "1e-06", "1e-08"}};
+  SweepExpectation& expected = *result.verdicts[0].expectation;
+  expected.never = false;
+  expected.low = 1e-8;
+  expected.high = 1e-6;
+  const auto text = [&] { return sweep_fields({result})[0].lists["rows"][0].values["expected"]; };
+  EXPECT_NE(text().find("breaks from 1e\\-08 to 1e\\-06: "), std::string::npos) << text();
+  expected.high = expected.low;
+  EXPECT_NE(text().find("breaks at 1e\\-08: "), std::string::npos) << text();
+}
+
 TEST(SweepSection, SweepsThatWereNotRunAreLeftOut) {
   Sweep sweep;
   sweep.dial = {"edge", "m", {1, 2}, {"1", "2"}};
@@ -63,6 +76,8 @@ TEST(Controls, EachWrongMethodStandsWithItsWorstDamage) {
   ReportInput input;
   BlockSummary block = fabricated_block("plain");
   block.cells.push_back(fabricated_cell("frustum.flat", 0.3, 0, 1.0));
+  block.cells.push_back(fabricated_cell("frustum.lucky", 0.3, 0, 0.5));  // promises nothing
+  block.cells.back().guarantee = Guarantee::approximate;
   CellSummary wrong = fabricated_cell("frustum.wrong", 0.2, 1000, 6.5);
   wrong.guarantee = Guarantee::erroneous;
   block.cells.push_back(wrong);

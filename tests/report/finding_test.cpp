@@ -69,6 +69,18 @@ TEST(Finding, LostObjectsAreErrorsUnlessOnlyPixelsArePromised) {
   EXPECT_TRUE(is_free_of_errors(cell));
 }
 
+TEST(Finding, WhatIsWrongOnPurposeIsNeverTheBest) {
+  BlockSummary block = fabricated_block("made_up");
+  block.cells.push_back(fabricated_cell("wrong", 0.1, 0, 1.0));
+  block.cells.back().guarantee = Guarantee::erroneous;
+  for (const bool drawn : {true, false}) {
+    block.drawn = drawn;
+    const Finding finding = find(block);
+    EXPECT_TRUE(finding.best == nullptr || finding.best->culler != "wrong");
+    EXPECT_TRUE(finding.erring == nullptr || finding.erring->culler != "wrong");
+  }
+}
+
 TEST(Finding, AnOracleThatErrsIsNotNamed) {
   BlockSummary block = fabricated_block("made_up");
   block.cells[3].image_px = 1;
