@@ -17,7 +17,14 @@ def answers(folder):
         key = cell["key"]
         name = (key["chain"], cell["scene"], key["scene_hash"], key["path_hash"], key["replicate"])
         found[name] = [
-            (frame["set"], frame["submitted_triangles"], sorted(frame["counters"].items()))
+            (
+                frame["set"],
+                frame["one_sided"],
+                frame["submitted_triangles"],
+                frame["draws"],
+                frame["pieces"],
+                sorted(frame["counters"].items()),
+            )
             for frame in cell["frames"]
         ]
     return found

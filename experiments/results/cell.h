@@ -73,7 +73,7 @@ struct ResultCell {
   Repeatability repeatability = Repeatability::stateless;
   Granularity granularity = Granularity::object;
   Culls culls = Culls::hidden;
-  bool asks_device = false;  // waits for answers of the device while it culls
+  bool asks_device = false;  // uses the device while it culls: asks it, or sets what it draws
 
   double build_ms = 0.0;
   std::uint64_t bytes = 0;
