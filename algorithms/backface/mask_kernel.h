@@ -8,12 +8,10 @@
 //   which piece k is stored as its difference (exclusive or) to piece k - 1: a shuffle answers 0
 //   where offset - 16 k is below 0, so that all pieces up to the offset's own are added up, and
 //   leave the offset's own. The offset's highest bit is the sign, and chooses between the halves.
-// Guarantee: looking up rounds nothing, and counting adds once: every instruction set gives the
-// same
-//   bits.
+// Guarantee: looking up rounds nothing, and counting rounds one sum: every instruction set gives
+//   the same bits.
 // Cost: two bytes read a triangle; about two operations (VBMI: a tenth) a triangle.
-// Sources: Zhang and Hoff 1997 (Zachmann, Computer-Graphik 2, SS 2012, slides 13-18); shuffles with
-//   differences: W. Mula, "SIMD byte lookup" (the idea only).
+// Source: Zhang and Hoff 1997; Zachmann, Computer-Graphik 2, SS 2012, slides 13-18.
 #pragma once
 
 #include <array>
