@@ -43,7 +43,7 @@ CullerInfo describe() {
           "what the cone starts from: apex, a point behind all planes of the cluster; sphere, its "
           "bounding sphere, which finds less the farther the cluster's triangles lie apart"),
       ParameterSpec::integer(
-          "size", 16, 1, 4096, "triangles", ParameterSpec::Stage::build,
+          "size", 32, 1, 4096, "triangles", ParameterSpec::Stage::build,
           "triangles in a cluster; smaller ones find more back faces and take more tests. Small "
           "meshes get smaller ones, so that there are some dozens"),
       open_parameter()};

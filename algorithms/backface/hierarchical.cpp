@@ -51,7 +51,7 @@ CullerInfo describe() {
           "on: verdicts of earlier frames are used as long as they surely hold; off: every frame "
           "walks from the root, with the same answers"),
       ParameterSpec::integer(
-          "size", 16, 1, 4096, "triangles", ParameterSpec::Stage::build,
+          "size", 32, 1, 4096, "triangles", ParameterSpec::Stage::build,
           "triangles in a cluster, a leaf of the hierarchy; smaller ones find more back faces and "
           "take more tests and memory. Small meshes get smaller ones, so that there are some "
           "dozens"),
