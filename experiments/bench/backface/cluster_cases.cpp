@@ -26,8 +26,8 @@ ClusterSettings default_settings() {
 
 class TreeTests : public TestsContest {
  public:
-  TreeTests(const std::string& world, bool show_share)
-      : TestsContest(world, show_share),
+  TreeTests(const std::string& world, bool show_share, bool rows = false)
+      : TestsContest(world, show_share, rows),
         tree_(world_->mesh(), frame_, default_settings<ClusterTree>()) {
     answer_.reserve(tree_.nodes().size());
     clusters_.resize(words_of(tree_.cluster_count()));
@@ -53,8 +53,8 @@ class TreeTests : public TestsContest {
 
 class FlatTests : public TestsContest {
  public:
-  FlatTests(const std::string& world, bool show_share)
-      : TestsContest(world, show_share),
+  FlatTests(const std::string& world, bool show_share, bool rows = false)
+      : TestsContest(world, show_share, rows),
         flat_(world_->mesh(), frame_, default_settings<FlatClusters>()) {
     clusters_.resize(words_of(flat_.cluster_count()));
   }
@@ -119,12 +119,16 @@ void add_cluster_cases(std::vector<BenchCase>& cases) {
                        *kept = BumpyWorld::of(world);
                        return std::make_unique<TreeTests>(world, true);
                      }});
-    cases.push_back({"backface.cluster_tree", world + ", tests of 64 views", "us", peer,
-                     [=] { return std::make_unique<TreeTests>(world, false); }});
     cases.push_back({"backface.cluster", world, "share", peer,
                      [=] { return std::make_unique<FlatTests>(world, true); }});
-    cases.push_back({"backface.cluster", world + ", tests of 64 views", "us", peer,
-                     [=] { return std::make_unique<FlatTests>(world, false); }});
+    for (const bool rows : {false, true}) {
+      const std::string against = peer + (rows ? ", in rows for AVX2" : "");
+      const std::string name = world + ", tests of 64 views" + (rows ? ", rows" : "");
+      cases.push_back({"backface.cluster_tree", name, "us", against,
+                       [=] { return std::make_unique<TreeTests>(world, false, rows); }});
+      cases.push_back({"backface.cluster", name, "us", against,
+                       [=] { return std::make_unique<FlatTests>(world, false, rows); }});
+    }
     cases.push_back({peer, world, "share", "", nullptr, [=] { return their_share(world); }});
     for (const char* ours :
          {"backface.cluster_tree", "backface.cluster", "backface.cluster_tree > backface.polygon",

@@ -55,6 +55,14 @@ Meshlets::Meshlets(const Mesh& mesh) {
   }
   first_.push_back(static_cast<std::uint32_t>(triangles_.size()));
   kept_.resize(meshlets_.size());
+  culled_.resize(meshlets_.size());
+  for (const meshopt_Bounds& bounds : bounds_) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      rows_.apex[axis].push_back(bounds.cone_apex[axis]);
+      rows_.axis[axis].push_back(bounds.cone_axis[axis]);
+    }
+    rows_.cutoff.push_back(bounds.cone_cutoff);
+  }
 }
 
 std::size_t Meshlets::test(const glm::dvec3& eye) {
@@ -71,6 +79,11 @@ std::size_t Meshlets::test(const glm::dvec3& eye) {
     kept += culled ? 0 : 1;
   }
   return static_cast<std::size_t>(kept - kept_.data());
+}
+
+void Meshlets::test_rows(const glm::dvec3& eye) {
+  const glm::vec3 camera(eye);
+  find_culled(rows_, {camera.x, camera.y, camera.z}, culled_.data());
 }
 
 void Meshlets::mark_left_out(std::size_t kept_count, std::vector<std::uint64_t>& bits) const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/scene/scene.h"
+#include "experiments/bench/backface/cone_rows.h"
 
 namespace vislab {
 
@@ -23,6 +24,10 @@ class Meshlets {
   std::size_t test(const glm::dvec3& eye);
   const std::vector<std::uint32_t>& kept() const { return kept_; }
 
+  /// The same test as a loop that the compiler turns into AVX2 where it can: numbers in rows, a
+  /// byte for each meshlet. Nothing that meshoptimizer offers, but what its user can make of it.
+  void test_rows(const glm::dvec3& eye);
+
   std::size_t count() const { return meshlets_.size(); }
   /// Sets the bits of the mesh's triangles that are in no kept meshlet.
   void mark_left_out(std::size_t kept_count, std::vector<std::uint64_t>& bits) const;
@@ -33,6 +38,8 @@ class Meshlets {
   std::vector<std::uint32_t> triangles_;  // of the mesh, meshlet by meshlet
   std::vector<std::uint32_t> first_;      // by meshlet, and the end
   std::vector<std::uint32_t> kept_;
+  ConeRows rows_;
+  std::vector<std::uint8_t> culled_;  // by meshlet, of test_rows()
 };
 
 }  // namespace vislab

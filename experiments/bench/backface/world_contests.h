@@ -13,14 +13,15 @@
 namespace vislab {
 
 /// The tests of all clusters of a mesh from all eyes of a world: ours gives a bit for each cluster,
-/// theirs a list of those kept.
+/// theirs a list of those kept, or with `rows` a byte for each (Meshlets::test_rows).
 class TestsContest : public Contest {
  public:
-  TestsContest(const std::string& world, bool show_share)
+  TestsContest(const std::string& world, bool show_share, bool rows = false)
       : world_(BumpyWorld::of(world)),
         frame_(world_->mesh()),
         meshlets_(world_->mesh()),
-        show_share_(show_share) {
+        show_share_(show_share),
+        rows_(rows) {
     for (std::size_t eye = 0; eye < world_->eye_count(); ++eye) {
       eyes_.push_back(*backface_culling::eye_in_mesh(world_->camera(eye),
                                                      world_->scene().objects[0].transform, frame_));
@@ -32,7 +33,11 @@ class TestsContest : public Contest {
   }
   void theirs() override {
     for (std::size_t eye = 0; eye < eyes_.size(); ++eye) {
-      meshlets_.test(world_->camera(eye).pose.eye);
+      if (rows_) {
+        meshlets_.test_rows(world_->camera(eye).pose.eye);
+      } else {
+        meshlets_.test(world_->camera(eye).pose.eye);
+      }
     }
   }
   bool equal() override {
@@ -66,7 +71,7 @@ class TestsContest : public Contest {
  private:
   std::vector<backface_culling::MeshEye> eyes_;
   Meshlets meshlets_;
-  bool show_share_;
+  bool show_share_, rows_;
   double share_ = 0.0;
 };
 
