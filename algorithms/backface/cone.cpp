@@ -1,16 +1,18 @@
 // backface.cone: leaves out clusters of triangles that surely face away, by a cone of normals each.
 //
 // Idea: triangles whose planes lie near each other are made a cluster. If all normals of a cluster
-//   lie in a cone around an axis, and its planes all have an apex before them, every eye in the
-//   opposite cone from the apex sees all of the cluster from behind: one dot product and one
-//   comparison tell it for the whole cluster, without a root.
+//   lie in a cone around an axis, and an apex lies behind all its planes, every eye in the opposite
+//   cone from the apex sees all of the cluster from behind: one dot product and one comparison tell
+//   it for the whole cluster, without a root.
 // Guarantee: conservative, as FacingCuller says: only what surely faces away goes. Triangles that
 //   have no area, or nearly, are never left out.
 // Cost: O(clusters of the objects offered) for the test; runs of triangles for the answer. 28 bytes
 //   a cluster (form=sphere: 32), and 4 a run of consecutive triangles.
 // Limits: keeps clusters whose normals spread, those near the silhouette, and those that the eye is
-//   near to; with a sphere also those whose triangles lie far apart. A triangle here and there of
-//   kept clusters still faces away: backface.polygon after it finds those.
+//   near to; with a sphere also those whose triangles lie far apart. On rough surfaces the triangles
+//   of a cluster are scattered over the mesh: writing their bits then takes far longer than the
+//   tests, and longer than testing every triangle in order. A triangle here and there of kept
+//   clusters still faces away: backface.polygon after it finds those.
 // Sources: Shirman and Abi-Ezzi 1993; Kowalka 2016, 2.2.2; with a sphere as meshoptimizer 0.18
 //   documents beside meshopt_computeClusterBounds.
 
