@@ -51,7 +51,7 @@ class Builder {
       }
     }
     const auto count = static_cast<std::uint32_t>(items_.size());
-    size_ = std::clamp(count / least_clusters, 1U, settings.size);
+    size_ = std::clamp(count / settings.least_count, 1U, settings.size);
     smallest_ = std::max(1U, size_ / most_division);
     const auto reach = static_cast<float>(settings.eye_distance * frame.size);
     eyes_.extend(glm::vec3(-reach));

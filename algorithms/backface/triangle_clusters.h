@@ -25,8 +25,9 @@ namespace vislab::backface_culling {
 
 struct ClusterSettings {
   /// Triangles in a cluster before any are joined, at least 1. Smaller where a cluster would hardly
-  /// ever be culled, across sharp edges say, and in small meshes, so that there are least_clusters.
+  /// ever be culled, across sharp edges say, and in small meshes, so that there are `least_count`.
   std::uint32_t size = 16;
+  std::uint32_t least_count = 256;  // at least 1
   /// Where eyes usually are: the distance from the middle of the mesh, as a multiple of its size
   /// (MeshFrame::size), at least 2. What is near and what is probable is measured with it.
   double eye_distance = 3.0;
@@ -36,7 +37,6 @@ struct ClusterSettings {
   JoinRule join = JoinRule::derived;
   Origin origin = Origin::centre;  // of the bounds by which it is judged what joins
 };
-inline constexpr std::uint32_t least_clusters = 256;
 
 /// A partition of a mesh's triangles, and the tree of splits that made it.
 struct TriangleClusters {
