@@ -9,10 +9,10 @@
 // Cost: O(clusters of the objects offered) for the test; runs of triangles for the answer. 28 bytes
 //   a cluster (form=sphere: 32), and 4 a run of consecutive triangles.
 // Limits: keeps clusters whose normals spread, those near the silhouette, and those that the eye is
-//   near to; with a sphere also those whose triangles lie far apart. On rough surfaces the triangles
-//   of a cluster are scattered over the mesh: writing their bits then takes far longer than the
-//   tests, and longer than testing every triangle in order. A triangle here and there of kept
-//   clusters still faces away: backface.polygon after it finds those.
+//   near to; with a sphere also those whose triangles lie far apart. On rough surfaces the
+//   triangles of a cluster are scattered over the mesh: writing their bits then takes far longer
+//   than the tests, and longer than testing every triangle in order. A triangle here and there of
+//   kept clusters still faces away: backface.polygon after it finds those.
 // Sources: Shirman and Abi-Ezzi 1993; Kowalka 2016, 2.2.2; with a sphere as meshoptimizer 0.18
 //   documents beside meshopt_computeClusterBounds.
 
