@@ -40,7 +40,7 @@ TEST(Registry, DoesNotTakeANameTwice) {
 TEST(Registry, GivesEqualChainsEqualKeys) {
   const Registry registry = all_cullers();
   const std::string key =
-      "backface.polygon[open=two_sided] > occlusion.stop_and_wait[threshold_px=7]";
+      "backface.polygon[form=hesse,open=two_sided] > occlusion.stop_and_wait[threshold_px=7]";
   for (const char* spec :
        {"backface.polygon>occlusion.stop_and_wait[threshold_px=7]",
         " backface.polygon[open=two_sided]  >  occlusion.stop_and_wait[threshold_px=007] ",
