@@ -41,18 +41,21 @@ std::map<Culls, RightCells> candidates_of(const BlockSummary& block) {
   return kinds;
 }
 
-/// False if all of them submit what none does: where nothing can be left out (meshes that are not
-/// solid, to cullers of back faces) the least cost is that of noise.
-bool any_leaves_out(const BlockSummary& block, const RightCells& cells) {
+/// Those that submit less than none does, in their order; all if none was not measured.
+RightCells that_leave_out(const BlockSummary& block, RightCells cells) {
   const auto none = std::ranges::find(block.cells, "none", &CellSummary::canonical);
-  return none == block.cells.end() || std::ranges::any_of(cells, [&](const CellSummary* cell) {
-           return cell->submitted_triangles < none->submitted_triangles;
-         });
+  if (none != block.cells.end()) {
+    std::erase_if(cells, [&](const CellSummary* cell) {
+      return cell->submitted_triangles >= none->submitted_triangles;
+    });
+  }
+  return cells;
 }
 
 GuideRow row_of(const BlockSummary& block, const RightCells& cells) {
+  const RightCells culling = that_leave_out(block, cells);
   const auto soonest = std::ranges::min_element(
-      cells, {}, [](const CellSummary* cell) { return decision_us(*cell); });
+      culling, {}, [](const CellSummary* cell) { return decision_us(*cell); });
   return {&block, cells[0], cells[1], *soonest};
 }
 
@@ -109,7 +112,9 @@ std::vector<CullerGuide> make_guides(const std::vector<BlockSummary>& blocks) {
     // Times of different machines have no common order.
     if (block.machines.size() > 1) continue;
     for (auto& [culls, cells] : candidates_of(block)) {
-      if (cells.size() < fewest_methods || !any_leaves_out(block, cells)) continue;
+      // Where nothing can be left out (meshes that are not solid, to cullers of back faces) the
+      // least cost is that of noise.
+      if (cells.size() < fewest_methods || that_leave_out(block, cells).empty()) continue;
       kinds[culls].emplace_back(&block, std::move(cells));
     }
   }

@@ -20,7 +20,7 @@ struct GuideRow {
   const BlockSummary* block = nullptr;
   const CellSummary* best = nullptr;       // costs least
   const CellSummary* runner_up = nullptr;  // the next
-  const CellSummary* soonest = nullptr;    // least decision_us
+  const CellSummary* soonest = nullptr;    // least decision_us of those that leave out
 };
 
 /// How one method fares on a group of blocks, against the best on each.
@@ -51,10 +51,10 @@ struct CullerGuide {
 };
 
 /// One guide for each kind of culling, whatever the families, from the blocks that have at least
-/// three candidates of that kind, one of which at least leaves something out. A candidate is a method (no chain, no anchor, nothing declared
-/// erroneous) that was measured free of errors. Where nothing is drawn, only methods that submit
-/// at most 1 % more triangles than the fewest are: deciding soon is no merit in one that keeps
-/// everything.
+/// three candidates of that kind, one of which at least leaves something out. A candidate is a
+/// method (no chain, no anchor, nothing declared erroneous) that was measured free of errors. Where
+/// nothing is drawn, only methods that submit at most 1 % more triangles than the fewest are:
+/// deciding soon is no merit in one that keeps everything.
 std::vector<CullerGuide> make_guides(const std::vector<BlockSummary>& blocks);
 std::vector<CullerGuide> make_guides(std::vector<BlockSummary>&& blocks) = delete;  // it points in
 

@@ -52,6 +52,18 @@ TEST(Guide, NamesTheRightMethodThatCostsLeastAndTheNextAndTheSoonest) {
   EXPECT_EQ(guides[0].advice[0].eligible, 3U);
 }
 
+TEST(Guide, AMethodThatKeepsEverythingDoesNotDecideSoonest) {
+  std::vector<CellSummary> cells{method("frustum.idle", 0.1, 9.0), method("frustum.a", 3.0, 8.0),
+                                 method("frustum.b", 4.0, 7.0), method("none", 0.0, 10.0)};
+  for (CellSummary& cell : cells) cell.submitted_triangles = 1000.0;
+  cells[1].submitted_triangles = cells[2].submitted_triangles = 500.0;
+  cells[3].anchor = true;
+  const std::vector<BlockSummary> blocks{block_with("s", cells)};
+  const auto guides = make_guides(blocks);
+  ASSERT_EQ(guides.size(), 1U);
+  EXPECT_EQ(guides[0].rows[0].soonest->culler, "frustum.a");
+}
+
 TEST(Guide, WhereNothingIsDrawnAMethodThatHardlyCullsCannotWin) {
   std::vector<CellSummary> cells{method("frustum.lazy", 1.0, 1.0), method("frustum.a", 9.0, 1.0),
                                  method("frustum.b", 8.0, 1.0), method("frustum.c", 7.0, 1.0)};
