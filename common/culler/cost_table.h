@@ -7,7 +7,7 @@
 
 namespace vislab {
 
-/// The median of several measurements, and their quartiles.
+/// By the least of several times, and the quartiles of what single turns gave.
 struct Cost {
   double ns = 0.0;
   double low_ns = 0.0, high_ns = 0.0;

@@ -15,7 +15,7 @@ namespace vislab {
 namespace {
 
 constexpr Viewport viewport{512, 512};
-constexpr int repeats = 7;
+constexpr int repeats = 15;
 
 // The sphere's triangles are as large in the image as those of a scanned figure that fills it: some
 // three pixels.
@@ -137,22 +137,29 @@ double nanoseconds(const std::function<void()>& work) {
 
 }  // namespace
 
-Cost cost_of(std::vector<double> samples_ns) {
-  if (samples_ns.empty()) throw std::logic_error("cost_of: there is no sample");
-  for (double& sample : samples_ns) sample = std::max(0.0, sample);
-  return {median(samples_ns), quantile(samples_ns, 0.25), quantile(samples_ns, 0.75)};
+Cost cost_of(std::span<const double> larger_ns, std::span<const double> smaller_ns, double items) {
+  if (larger_ns.empty() || larger_ns.size() != smaller_ns.size()) {
+    throw std::logic_error("cost_of: there are no pairs of times");
+  }
+  std::vector<double> more;
+  for (std::size_t i = 0; i < larger_ns.size(); ++i) {
+    more.push_back(std::max(0.0, larger_ns[i] - smaller_ns[i]) / items);
+  }
+  const double least =
+      std::max(0.0, std::ranges::min(larger_ns) - std::ranges::min(smaller_ns)) / items;
+  return {least, std::min(least, quantile(more, 0.25)), std::max(least, quantile(more, 0.75))};
 }
 
 Cost cost_of_more(const std::function<void()>& larger, const std::function<void()>& smaller,
                   double items, int times) {
   larger();
   smaller();
-  std::vector<double> samples;
+  std::vector<double> larger_ns, smaller_ns;
   for (int i = 0; i < times; ++i) {
-    const double more = nanoseconds(larger);
-    samples.push_back((more - nanoseconds(smaller)) / items);
+    larger_ns.push_back(nanoseconds(larger));
+    smaller_ns.push_back(nanoseconds(smaller));
   }
-  return cost_of(std::move(samples));
+  return cost_of(larger_ns, smaller_ns, items);
 }
 
 CostTable calibrate() {

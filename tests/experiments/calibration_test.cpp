@@ -2,18 +2,28 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
-
 #include <cmath>
+#include <span>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace vislab {
 namespace {
 
-TEST(Calibration, ACostIsTheMedianWithItsQuartilesAndNeverBelowZero) {
-  EXPECT_EQ(cost_of({5.0, 1.0, 3.0, 2.0, 4.0}), (Cost{3.0, 2.0, 4.0}));
-  EXPECT_EQ(cost_of({-7.0}), Cost::exactly(0.0));
-  EXPECT_THROW(cost_of({}), std::logic_error);
+TEST(Calibration, ACostIsTheDifferenceOfTheLeastTimesWhateverElseRanBeside) {
+  const std::vector<double> larger{110.0, 500.0, 104.0, 108.0, 120.0};
+  const std::vector<double> smaller{54.0, 58.0, 60.0, 300.0, 56.0};
+  const Cost cost = cost_of(larger, smaller, 10.0);
+  EXPECT_DOUBLE_EQ(cost.ns, 5.0);
+  EXPECT_DOUBLE_EQ(cost.low_ns, 4.4);  // of 0, 4.4, 5.6, 6.4, 44.2
+  EXPECT_DOUBLE_EQ(cost.high_ns, 6.4);
+}
+
+TEST(Calibration, ACostIsNeverBelowZero) {
+  const double more = 9.0, less = 2.0;
+  EXPECT_EQ(cost_of(std::span(&less, 1), std::span(&more, 1), 1.0), Cost::exactly(0.0));
+  EXPECT_THROW(cost_of({}, {}, 1.0), std::logic_error);
 }
 
 TEST(Calibration, BothWorksRunInTurnsAndOnceBeforeTheyCount) {
