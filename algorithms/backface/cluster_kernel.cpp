@@ -99,15 +99,18 @@ void find_in_blocks(std::span<const ClusterBlock> blocks, const ClusterEye& eye,
   }
 }
 
-void walk(std::span<const ClusterTreeNode> tree, const ClusterEye& eye, TreeAnswer& answer) {
+template <bool with_mixed>
+HWY_INLINE void walk_down(std::span<const ClusterTreeNode> tree, const ClusterEye& eye,
+                          TreeAnswer& answer) {
   // First in, first out: what is to be visited is known long before, and can be fetched.
   constexpr std::size_t fetch_ahead = 4;
   constexpr std::size_t cache_line = 64;
-  answer.nodes_tested = answer.back_count = 0;
+  answer.nodes_tested = answer.back_count = answer.mixed_count = 0;
   if (tree.empty()) return;
   const EyeVectors eye_vectors(eye);
   std::uint32_t* pending = answer.pending.data();
   std::uint32_t* back_end = answer.back.data();
+  std::uint32_t* mixed_end = answer.mixed.data();
   std::size_t pending_count = 0;
   pending[pending_count++] = 0;
   std::size_t at = 0;
@@ -121,7 +124,7 @@ void walk(std::span<const ClusterTreeNode> tree, const ClusterEye& eye, TreeAnsw
     const std::uint32_t index = pending[at];
     const ClusterTreeNode& node = tree[index];
     std::uint32_t back = 0;
-    if (node.only_clusters) {
+    if (!with_mixed && node.only_clusters) {
       back = back_lanes(eye_vectors, node.children);
     } else {
       std::uint32_t front = 0;
@@ -136,9 +139,14 @@ void walk(std::span<const ClusterTreeNode> tree, const ClusterEye& eye, TreeAnsw
       }
       std::uint32_t mixed = ((1U << node.count) - 1) & ~(back | front);
       for (; mixed != 0; mixed &= mixed - 1) {
-        const std::uint32_t child = node.node[static_cast<std::size_t>(std::countr_zero(mixed))];
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(mixed));
+        const std::uint32_t child = node.node[lane];
         pending[pending_count] = child;
         pending_count += child != 0 ? 1 : 0;
+        if (with_mixed) {
+          *mixed_end = index * static_cast<std::uint32_t>(width) + lane;
+          mixed_end += child == 0 ? 1 : 0;
+        }
       }
     }
     for (; back != 0; back &= back - 1) {
@@ -148,6 +156,15 @@ void walk(std::span<const ClusterTreeNode> tree, const ClusterEye& eye, TreeAnsw
   }
   answer.nodes_tested = at;
   answer.back_count = static_cast<std::size_t>(back_end - answer.back.data());
+  if (with_mixed) answer.mixed_count = static_cast<std::size_t>(mixed_end - answer.mixed.data());
+}
+
+void walk(std::span<const ClusterTreeNode> tree, const ClusterEye& eye, TreeAnswer& answer) {
+  walk_down<false>(tree, eye, answer);
+}
+void walk_with_mixed(std::span<const ClusterTreeNode> tree, const ClusterEye& eye,
+                     TreeAnswer& answer) {
+  walk_down<true>(tree, eye, answer);
 }
 
 }  // namespace
@@ -159,6 +176,7 @@ namespace vislab::backface_culling {
 
 HWY_EXPORT(find_in_blocks);
 HWY_EXPORT(walk);
+HWY_EXPORT(walk_with_mixed);
 
 void ClusterBlock::set(std::size_t lane, const ClusterBound& bound) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -173,6 +191,8 @@ void ClusterBlock::set(std::size_t lane, const ClusterBound& bound) {
 void TreeAnswer::reserve(std::size_t nodes) {
   pending.resize(std::max(pending.size(), nodes + 1));
   back.resize(std::max(back.size(), nodes * ClusterBlock::width));
+  // Where none is mixed the walk writes one too many.
+  mixed.resize(std::max(mixed.size(), nodes * ClusterBlock::width + 1));
 }
 
 void find_back(std::span<const ClusterBlock> blocks, const ClusterEye& eye,
@@ -182,6 +202,11 @@ void find_back(std::span<const ClusterBlock> blocks, const ClusterEye& eye,
 
 void find_back(std::span<const ClusterTreeNode> tree, const ClusterEye& eye, TreeAnswer& answer) {
   HWY_DYNAMIC_DISPATCH(walk)(tree, eye, answer);
+}
+
+void find_back_and_mixed(std::span<const ClusterTreeNode> tree, const ClusterEye& eye,
+                         TreeAnswer& answer) {
+  HWY_DYNAMIC_DISPATCH(walk_with_mixed)(tree, eye, answer);
 }
 
 }  // namespace vislab::backface_culling

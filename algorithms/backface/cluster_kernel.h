@@ -55,10 +55,14 @@ struct TreeAnswer {
   /// Children that are seen from behind whole, as node * 16 + lane; none lies below another.
   std::vector<std::uint32_t> back;
   std::size_t back_count = 0;
+  /// If asked for: clusters that are neither behind nor before the eye whole, likewise.
+  std::vector<std::uint32_t> mixed;
+  std::size_t mixed_count = 0;
   std::size_t nodes_tested = 0;
   std::vector<std::uint32_t> pending;
 
   std::span<const std::uint32_t> found() const { return std::span(back).first(back_count); }
+  std::span<const std::uint32_t> found_mixed() const { return std::span(mixed).first(mixed_count); }
 
   /// Makes room for the answers of a tree.
   void reserve(std::size_t nodes);
@@ -67,5 +71,9 @@ struct TreeAnswer {
 /// Walks down from node 0, and no further where all triangles are seen from behind, or from the
 /// front. `answer` must have room for the tree.
 void find_back(std::span<const ClusterTreeNode> tree, const ClusterEye& eye, TreeAnswer& answer);
+
+/// The same, with the mixed clusters.
+void find_back_and_mixed(std::span<const ClusterTreeNode> tree, const ClusterEye& eye,
+                         TreeAnswer& answer);
 
 }  // namespace vislab::backface_culling

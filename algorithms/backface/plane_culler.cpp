@@ -17,7 +17,7 @@ void PlaneCuller::add_mesh(MeshId id, const Mesh& mesh, const MeshFrame& frame,
 }
 
 std::span<const std::uint64_t> PlaneCuller::mark_mesh(const ObjectView& view) {
-  test_ = find_eye(view, frame_of(view.mesh), planes_[place_[view.mesh]]);
+  test_ = find_eye(view, frame_of(view.mesh));
   return {};
 }
 

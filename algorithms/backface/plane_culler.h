@@ -16,8 +16,7 @@ class PlaneCuller : public FacingCuller {
 
  protected:
   /// The eye of an object, once for all of its ranges. Nothing: the object is kept whole.
-  virtual std::optional<PlaneTest> find_eye(const ObjectView& view, const MeshFrame& frame,
-                                            const PlaneArrays& planes) = 0;
+  virtual std::optional<PlaneTest> find_eye(const ObjectView& view, const MeshFrame& frame) = 0;
 
   void clear() final;
   void add_mesh(MeshId id, const Mesh& mesh, const MeshFrame& frame,

@@ -85,21 +85,25 @@ double power_above(double value) {
 
 }  // namespace
 
+double plane_unit(const MeshFrame& frame) { return power_above(frame.size); }
+
+std::array<float, 4> rounded_plane(const Mesh& mesh, const MeshFrame& frame,
+                                   std::uint32_t triangle) {
+  const glm::dvec4 plane = scaled_plane(mesh, frame, triangle);
+  return {static_cast<float>(plane.x), static_cast<float>(plane.y), static_cast<float>(plane.z),
+          static_cast<float>(plane.w / plane_unit(frame))};
+}
+
 PlaneArrays::PlaneArrays(const Mesh& mesh, const MeshFrame& frame)
     : count_(static_cast<std::uint32_t>(mesh.triangles.size())),
-      unit_(power_above(frame.size)),
       values_(std::size_t{4} * count_ + padding) {
   for (std::uint32_t i = 0; i < count_; ++i) {
-    const glm::dvec4 plane = scaled_plane(mesh, frame, i);
-    float* out = values_.data() + i;
-    out[0] = static_cast<float>(plane.x);
-    out[count_] = static_cast<float>(plane.y);
-    out[std::size_t{2} * count_] = static_cast<float>(plane.z);
-    out[std::size_t{3} * count_] = static_cast<float>(plane.w / unit_);
+    const std::array<float, 4> plane = rounded_plane(mesh, frame, i);
+    for (std::size_t row = 0; row < 4; ++row) values_[row * count_ + i] = plane[row];
   }
 }
 
-PlaneTest plane_test(const MeshEye& eye, const MeshFrame& frame, const PlaneArrays& planes) {
+PlaneTest plane_test(const MeshEye& eye, const MeshFrame& frame) {
   // Largest sum that a test can come to: 1/2 to 1 after scaling, w included. What then falls below
   // the smallest float is far less than the limit.
   const double scale = 1.0 / power_above(eye.magnitude() + eye.position.w * frame.size);
@@ -110,7 +114,7 @@ PlaneTest plane_test(const MeshEye& eye, const MeshFrame& frame, const PlaneArra
   scaled_frame.size *= scale;
   return {static_cast<float>(scaled.position.x), static_cast<float>(scaled.position.y),
           static_cast<float>(scaled.position.z),
-          static_cast<float>(eye.position.w * planes.unit() * scale),
+          static_cast<float>(eye.position.w * plane_unit(frame) * scale),
           behind_limit_float(scaled, scaled_frame)};
 }
 

@@ -10,6 +10,7 @@
 //   read 16 bytes.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -18,25 +19,30 @@
 
 namespace vislab::backface_culling {
 
-/// The planes of a mesh's triangles (scaled_plane), rounded to float.
+/// A power of two that no coordinate of a mesh relative to its middle exceeds: what distances of
+/// planes are given in.
+double plane_unit(const MeshFrame& frame);
+
+/// scaled_plane of a triangle, its distance in terms of plane_unit(), rounded to float.
+std::array<float, 4> rounded_plane(const Mesh& mesh, const MeshFrame& frame,
+                                   std::uint32_t triangle);
+
+/// The rounded planes of a mesh's triangles.
 class PlaneArrays {
  public:
   /// O(triangles).
   PlaneArrays(const Mesh& mesh, const MeshFrame& frame);
 
   std::uint32_t count() const { return count_; }
-  /// The rows of x, y, z of the normals and of the distances in terms of unit(); each may be read
+  /// The rows of x, y, z of the normals and of the distances; each may be read
   /// up to `padding` floats beyond its end.
   const float* row(std::size_t i) const { return values_.data() + i * count_; }
-  /// A power of two that no coordinate of the mesh relative to its middle exceeds.
-  double unit() const { return unit_; }
   std::size_t bytes() const { return values_.capacity() * sizeof(float); }
 
   static constexpr std::size_t padding = 16;
 
  private:
   std::uint32_t count_;
-  double unit_;
   std::vector<float, HugePageAllocator<float>> values_;
 };
 
@@ -46,7 +52,7 @@ struct PlaneTest {
   float x = 0.0F, y = 0.0F, z = 0.0F, w = 0.0F, limit = 0.0F;
 };
 
-PlaneTest plane_test(const MeshEye& eye, const MeshFrame& frame, const PlaneArrays& planes);
+PlaneTest plane_test(const MeshEye& eye, const MeshFrame& frame);
 
 /// Writes words_of(count) words to `back`: bit i tells that triangle first + i is surely seen from
 /// behind; bits beyond `count` are 0. first + count <= planes.count().

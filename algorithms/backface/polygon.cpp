@@ -110,9 +110,8 @@ class Hesse : public PlaneCuller {
   explicit Hesse(bool cull_open) : PlaneCuller(describe(), cull_open) {}
 
  protected:
-  std::optional<PlaneTest> find_eye(const ObjectView& view, const MeshFrame& frame,
-                                    const PlaneArrays& planes) override {
-    return plane_test(view.eye, frame, planes);
+  std::optional<PlaneTest> find_eye(const ObjectView& view, const MeshFrame& frame) override {
+    return plane_test(view.eye, frame);
   }
 };
 

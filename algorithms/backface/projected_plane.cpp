@@ -109,12 +109,11 @@ class ProjectedPlane : public PlaneCuller {
   explicit ProjectedPlane(bool cull_open) : PlaneCuller(describe(), cull_open) {}
 
  protected:
-  std::optional<PlaneTest> find_eye(const ObjectView& view, const MeshFrame& frame,
-                                    const PlaneArrays& planes) override {
+  std::optional<PlaneTest> find_eye(const ObjectView& view, const MeshFrame& frame) override {
     const std::optional<MeshEye> eye = projected_eye(
         view.frame.camera, view.frame.objects.transforms[view.object], frame, view.eye);
     if (!eye) return std::nullopt;
-    return plane_test(*eye, frame, planes);
+    return plane_test(*eye, frame);
   }
 };
 

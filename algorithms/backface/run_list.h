@@ -26,6 +26,18 @@ class RunList {
   void mark(std::uint32_t first, std::uint32_t end, std::uint64_t* bits) const {
     for (std::uint32_t i = first; i < end; ++i) bits[word(i)] |= mask(i);
   }
+  /// Sets the bits of those triangles of runs [first, end) for which the bit of `chosen` is set:
+  /// bit i is the i-th of their triangles. No more than 64 of them.
+  void mark_chosen(std::uint32_t first, std::uint32_t end, std::uint64_t chosen,
+                   std::uint64_t* bits) const {
+    std::uint32_t before = 0;
+    for (std::uint32_t i = first; i < end; ++i) {
+      const std::uint32_t rest = runs_[i] % longest;  // count - 1
+      bits[word(i)] |= ((chosen >> before) & ((std::uint64_t{2} << rest) - 1))
+                       << (runs_[i] / longest % 64);
+      before += rest + 1;
+    }
+  }
   /// Clears them.
   void unmark(std::uint32_t first, std::uint32_t end, std::uint64_t* bits) const {
     for (std::uint32_t i = first; i < end; ++i) bits[word(i)] &= ~mask(i);

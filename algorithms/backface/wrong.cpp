@@ -37,16 +37,14 @@ struct Mistake {
 /// Planes as backface.polygon has them, with another idea of where the eye is.
 class WrongEye : public PlaneCuller {
  public:
-  using FindEye = std::optional<PlaneTest> (*)(const ObjectView& view, const MeshFrame& frame,
-                                               const PlaneArrays& planes);
+  using FindEye = std::optional<PlaneTest> (*)(const ObjectView& view, const MeshFrame& frame);
 
   WrongEye(CullerInfo info, bool cull_open, FindEye find)
       : PlaneCuller(std::move(info), cull_open), find_(find) {}
 
  protected:
-  std::optional<PlaneTest> find_eye(const ObjectView& view, const MeshFrame& frame,
-                                    const PlaneArrays& planes) override {
-    return find_(view, frame, planes);
+  std::optional<PlaneTest> find_eye(const ObjectView& view, const MeshFrame& frame) override {
+    return find_(view, frame);
   }
 
  private:
@@ -56,30 +54,28 @@ class WrongEye : public PlaneCuller {
 std::unique_ptr<ICuller> view_direction(CullerInfo info, const ParameterValues& values) {
   return std::make_unique<WrongEye>(
       std::move(info), culls_open(values),
-      [](const ObjectView& view, const MeshFrame& frame,
-         const PlaneArrays& planes) -> std::optional<PlaneTest> {
+      [](const ObjectView& view, const MeshFrame& frame) -> std::optional<PlaneTest> {
         Camera camera = view.frame.camera;
         camera.lens.projection = Projection::orthographic;
         const auto eye = eye_in_mesh(camera, view.frame.objects.transforms[view.object], frame);
         if (!eye) return std::nullopt;
-        return plane_test(*eye, frame, planes);
+        return plane_test(*eye, frame);
       });
 }
 
 std::unique_ptr<ICuller> winding_ignored(CullerInfo info, const ParameterValues& values) {
-  return std::make_unique<WrongEye>(std::move(info), culls_open(values),
-                                    [](const ObjectView& view, const MeshFrame& frame,
-                                       const PlaneArrays& planes) -> std::optional<PlaneTest> {
-                                      PlaneTest test = plane_test(view.eye, frame, planes);
-                                      const glm::dmat4x3& transform =
-                                          view.frame.objects.transforms[view.object];
-                                      // The normal of the transformed vertices is the right one
-                                      // times the determinant.
-                                      if (glm::determinant(glm::dmat3(transform)) < 0.0) {
-                                        test = {-test.x, -test.y, -test.z, -test.w, test.limit};
-                                      }
-                                      return test;
-                                    });
+  return std::make_unique<WrongEye>(
+      std::move(info), culls_open(values),
+      [](const ObjectView& view, const MeshFrame& frame) -> std::optional<PlaneTest> {
+        PlaneTest test = plane_test(view.eye, frame);
+        const glm::dmat4x3& transform = view.frame.objects.transforms[view.object];
+        // The normal of the transformed vertices is the right one
+        // times the determinant.
+        if (glm::determinant(glm::dmat3(transform)) < 0.0) {
+          test = {-test.x, -test.y, -test.z, -test.w, test.limit};
+        }
+        return test;
+      });
 }
 
 /// Normals taken to the world by the object's matrix itself.

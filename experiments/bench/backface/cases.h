@@ -8,7 +8,8 @@
 namespace vislab {
 
 /// Clusters on the bumpy spheres against meshoptimizer's cones: shares and times of tests; whole
-/// cullers and chains against backface.polygon; building and memory.
+/// cullers and chains against backface.polygon, also on scanned figures if they were fetched;
+/// building and memory.
 void add_cluster_cases(std::vector<BenchCase>& cases);
 
 /// Cones of normals on the same spheres; what is saved by remembering verdicts from frame to frame.

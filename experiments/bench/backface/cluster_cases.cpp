@@ -72,7 +72,7 @@ class FlatTests : public TestsContest {
 /// Millions of triangles a second, in the build that other work on the machine disturbed least.
 template <typename Clusters>
 Measurement build_rate(const std::string& world_name) {
-  const std::shared_ptr<const BumpyWorld> world = BumpyWorld::of(world_name);
+  const std::shared_ptr<const FacingWorld> world = FacingWorld::of(world_name);
   const MeshFrame frame(world->mesh());
   std::vector<double> seconds;
   for (int i = 0; i < 5; ++i) {
@@ -87,7 +87,7 @@ Measurement build_rate(const std::string& world_name) {
 
 template <typename Clusters>
 Measurement bytes_per_triangle(const std::string& world_name) {
-  const std::shared_ptr<const BumpyWorld> world = BumpyWorld::of(world_name);
+  const std::shared_ptr<const FacingWorld> world = FacingWorld::of(world_name);
   const MeshFrame frame(world->mesh());
   const Clusters clusters(world->mesh(), frame, default_settings<Clusters>());
   return {
@@ -97,7 +97,7 @@ Measurement bytes_per_triangle(const std::string& world_name) {
 
 /// What meshoptimizer's own cones find.
 Measurement their_share(const std::string& world_name) {
-  const std::shared_ptr<const BumpyWorld> world = BumpyWorld::of(world_name);
+  const std::shared_ptr<const FacingWorld> world = FacingWorld::of(world_name);
   Meshlets meshlets(world->mesh());
   LeftOut left_out;
   for (std::size_t eye = 0; eye < world->eye_count(); ++eye) {
@@ -108,15 +108,26 @@ Measurement their_share(const std::string& world_name) {
   return {left_out.share(*world), left_out.not_back == 0};
 }
 
+/// Whole cullers and chains, up to the ranges of triangles that are kept.
+void add_to_ranges(std::vector<BenchCase>& cases, const std::string& world) {
+  for (const char* ours : {"backface.cluster_tree", "backface.cluster_tree[mixed=test]",
+                           "backface.cluster", "backface.cluster_tree > backface.polygon",
+                           "backface.cluster_tree > backface.normal_mask"}) {
+    cases.push_back({ours, world + ", to ranges", "share", "backface.polygon", [=] {
+                       return std::make_unique<CullersContest>(world, ours, "backface.polygon");
+                     }});
+  }
+}
+
 }  // namespace
 
 void add_cluster_cases(std::vector<BenchCase>& cases) {
   const std::string peer = "meshoptimizer's cones";
   for (const std::string world : {"sphere", "low", "high"}) {
     // The world is kept from the first case that needs it to the last.
-    const auto kept = std::make_shared<std::shared_ptr<const BumpyWorld>>();
+    const auto kept = std::make_shared<std::shared_ptr<const FacingWorld>>();
     cases.push_back({"backface.cluster_tree", world, "share", peer, [=] {
-                       *kept = BumpyWorld::of(world);
+                       *kept = FacingWorld::of(world);
                        return std::make_unique<TreeTests>(world, true);
                      }});
     cases.push_back({"backface.cluster", world, "share", peer,
@@ -130,13 +141,7 @@ void add_cluster_cases(std::vector<BenchCase>& cases) {
                        [=] { return std::make_unique<FlatTests>(world, false, rows); }});
     }
     cases.push_back({peer, world, "share", "", nullptr, [=] { return their_share(world); }});
-    for (const char* ours :
-         {"backface.cluster_tree", "backface.cluster", "backface.cluster_tree > backface.polygon",
-          "backface.cluster_tree > backface.normal_mask"}) {
-      cases.push_back({ours, world + ", to ranges", "share", "backface.polygon", [=] {
-                         return std::make_unique<CullersContest>(world, ours, "backface.polygon");
-                       }});
-    }
+    add_to_ranges(cases, world);
     cases.push_back({"backface.cluster_tree", world + ", build", "Mtriangle/s", "", nullptr,
                      [=] { return build_rate<ClusterTree>(world); }});
     cases.push_back({"backface.cluster", world + ", build", "Mtriangle/s", "", nullptr,
@@ -149,6 +154,7 @@ void add_cluster_cases(std::vector<BenchCase>& cases) {
                        return bytes;
                      }});
   }
+  for (const std::string& world : FacingWorld::scanned()) add_to_ranges(cases, world);
 }
 
 }  // namespace vislab

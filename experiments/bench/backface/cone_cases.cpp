@@ -139,9 +139,9 @@ void add_cone_cases(std::vector<BenchCase>& cases) {
   const std::string peer = "meshoptimizer's cones";
   for (const std::string world : {"sphere", "low", "high"}) {
     // The world is kept from the first case that needs it to the last.
-    const auto kept = std::make_shared<std::shared_ptr<const BumpyWorld>>();
+    const auto kept = std::make_shared<std::shared_ptr<const FacingWorld>>();
     cases.push_back({"backface.cone", world, "share", peer, [=] {
-                       *kept = BumpyWorld::of(world);
+                       *kept = FacingWorld::of(world);
                        return std::make_unique<ConeTests>(world, true);
                      }});
     cases.push_back({"backface.cone", world + ", tests of 64 views", "us", peer,

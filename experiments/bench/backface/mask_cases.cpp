@@ -78,9 +78,7 @@ class ManyTriangles {
     marker_.mark(0, count(), back_.data());
   }
   /// What backface.polygon does.
-  void test_planes() {
-    mark_behind(*planes_, plane_test(*eye_, frame_, *planes_), 0, count(), back_.data());
-  }
+  void test_planes() { mark_behind(*planes_, plane_test(*eye_, frame_), 0, count(), back_.data()); }
   void read() { sum_ = streaming_read(classes_.offsets(), classes_.bits(), count() / 128 * 128); }
 
   /// Are the triangles of the last answer all seen from behind, and is it a good part of them?

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "algorithms/backface/plane_kernel.h"
-#include "experiments/bench/backface/bumpy_world.h"
 #include "experiments/bench/backface/cases.h"
+#include "experiments/bench/backface/facing_world.h"
 #include "experiments/bench/backface/streaming_read.h"
 #include "experiments/bench/backface/triangle_side.h"
 
@@ -18,7 +18,7 @@ constexpr std::array<std::size_t, 4> eyes{0, 21, 42, 63};
 class CullerContest : public Contest {
  public:
   CullerContest(const std::string& ours, const std::string& theirs)
-      : world_(BumpyWorld::of("high")),
+      : world_(FacingWorld::of("high")),
         ours_(ours, world_->scene()),
         theirs_(theirs, world_->scene()) {}
 
@@ -55,7 +55,7 @@ class CullerContest : public Contest {
   }
   bool approximate() const { return theirs_.culler().info().guarantee == Guarantee::approximate; }
 
-  std::shared_ptr<const BumpyWorld> world_;
+  std::shared_ptr<const FacingWorld> world_;
   TriangleSide ours_;
   TriangleSide theirs_;
 };
@@ -67,14 +67,14 @@ class KernelContest : public Contest {
 
   explicit KernelContest(Against against)
       : against_(against),
-        world_(BumpyWorld::of("high")),
+        world_(FacingWorld::of("high")),
         frame_(world_->mesh()),
         planes_(world_->mesh(), frame_),
         our_bits_(backface_culling::words_of(planes_.count())),
         their_bits_(our_bits_.size()) {
     backface_culling::MeshEye eye;
     eye.position = glm::dvec4(world_->camera(0).pose.eye - frame_.middle, 1.0);
-    test_ = backface_culling::plane_test(eye, frame_, planes_);
+    test_ = backface_culling::plane_test(eye, frame_);
   }
 
   void ours() override {
@@ -117,7 +117,7 @@ class KernelContest : public Contest {
   }
 
   Against against_;
-  std::shared_ptr<const BumpyWorld> world_;
+  std::shared_ptr<const FacingWorld> world_;
   backface_culling::MeshFrame frame_;
   backface_culling::PlaneArrays planes_;
   backface_culling::PlaneTest test_;

@@ -1,11 +1,11 @@
-// The contests on the bumpy spheres that several files of cases share.
+// The contests on bumpy spheres and scanned figures that several files of cases share.
 #pragma once
 
 #include <algorithm>
 
 #include "algorithms/backface/back_bits.h"
 #include "algorithms/backface/mesh_eye.h"
-#include "experiments/bench/backface/bumpy_world.h"
+#include "experiments/bench/backface/facing_world.h"
 #include "experiments/bench/backface/meshlets.h"
 #include "experiments/bench/backface/triangle_side.h"
 #include "experiments/bench/bench.h"
@@ -17,7 +17,7 @@ namespace vislab {
 class TestsContest : public Contest {
  public:
   TestsContest(const std::string& world, bool show_share, bool rows = false)
-      : world_(BumpyWorld::of(world)),
+      : world_(FacingWorld::of(world)),
         frame_(world_->mesh()),
         meshlets_(world_->mesh()),
         show_share_(show_share),
@@ -64,7 +64,7 @@ class TestsContest : public Contest {
   /// The same as bits of triangles.
   virtual void mark(std::vector<std::uint64_t>& bits) = 0;
 
-  std::shared_ptr<const BumpyWorld> world_;
+  std::shared_ptr<const FacingWorld> world_;
   backface_culling::MeshFrame frame_;
   std::vector<std::uint64_t> clusters_;
 
@@ -80,7 +80,7 @@ class TestsContest : public Contest {
 class CullersContest : public Contest {
  public:
   CullersContest(const std::string& world, const std::string& ours, const std::string& theirs)
-      : world_(BumpyWorld::of(world)),
+      : world_(FacingWorld::of(world)),
         ours_(ours, world_->scene()),
         theirs_(theirs, world_->scene()) {}
 
@@ -106,7 +106,7 @@ class CullersContest : public Contest {
     return sum;
   }
 
-  std::shared_ptr<const BumpyWorld> world_;
+  std::shared_ptr<const FacingWorld> world_;
   TriangleSide ours_, theirs_;
   double share_ = 0.0;
 };

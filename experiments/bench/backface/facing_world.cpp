@@ -1,14 +1,16 @@
-#include "experiments/bench/backface/bumpy_world.h"
+#include "experiments/bench/backface/facing_world.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <numbers>
-#include <stdexcept>
 
 #include "algorithms/backface/back_bits.h"
 #include "common/scene/generators/generators.h"
+#include "common/scene/library.h"
 
 namespace vislab {
 namespace {
@@ -19,11 +21,24 @@ constexpr std::uint32_t subdivisions = 289;
 constexpr std::size_t eyes = 64;
 constexpr double distance = 3.0;
 
-Bumps bumps_of(const std::string& name) {
-  if (name == "sphere") return Bumps::none;
-  if (name == "low") return Bumps::low;
-  if (name == "high") return Bumps::high;
-  throw std::logic_error("no bumpy sphere is called " + name);
+DataFolders folders() {
+  const std::filesystem::path data = std::filesystem::path(VISLAB_SOURCE_DIR) / "data";
+  return {data, data / "cache"};
+}
+
+Scene bumpy_sphere(Bumps bumps) {
+  return make_bumpy_sphere({subdivisions, bumps, 0.0, glm::dvec3(0.0)});
+}
+
+/// The mesh alone, where its own frame has it.
+Scene scene_of(const std::string& name) {
+  if (name == "sphere") return bumpy_sphere(Bumps::none);
+  if (name == "low") return bumpy_sphere(Bumps::low);
+  if (name == "high") return bumpy_sphere(Bumps::high);
+  Scene scene;
+  scene.meshes.push_back(std::move(load_scene(name, folders()).scene.meshes.front()));
+  scene.objects = {{0, glm::dmat4x3(1.0), none_id}};
+  return scene;
 }
 
 /// Evenly spread directions: steps of the golden angle along a spiral from pole to pole.
@@ -49,14 +64,16 @@ bool is_back(const Mesh& mesh, const glm::uvec3& triangle, const glm::dvec3& eye
 
 }  // namespace
 
-BumpyWorld::BumpyWorld(const std::string& name)
-    : scene_(make_bumpy_sphere({subdivisions, bumps_of(name), 0.0, glm::dvec3(0.0)})) {
+FacingWorld::FacingWorld(const std::string& name) : scene_(scene_of(name)) {
   scene_.finish();
   state_ = std::make_unique<SceneState>(scene_);
+  const glm::dvec3 middle(mesh().bounds.center());
+  const glm::vec3 sides = mesh().bounds.max - mesh().bounds.min;
+  const double size = 0.5 * double(std::max({sides.x, sides.y, sides.z}));
   for (std::size_t i = 0; i < eyes; ++i) {
-    const glm::dvec3 eye = distance * direction(i);
-    cameras_.push_back(
-        {look_at(eye, {0.0, 0.0, 0.0}), perspective_lens(std::numbers::pi / 3.0, 1.0, 0.1, 10.0)});
+    const glm::dvec3 eye = middle + distance * size * direction(i);
+    cameras_.push_back({look_at(eye, middle),
+                        perspective_lens(std::numbers::pi / 3.0, 1.0, 0.1 * size, 10.0 * size)});
     std::vector<std::uint64_t>& bits = back_.emplace_back(words_of(mesh().triangles.size()), 0);
     for (std::size_t t = 0; t < mesh().triangles.size(); ++t) {
       const bool back = is_back(mesh(), mesh().triangles[t], eye);
@@ -66,21 +83,26 @@ BumpyWorld::BumpyWorld(const std::string& name)
   }
 }
 
-std::shared_ptr<const BumpyWorld> BumpyWorld::of(const std::string& name) {
-  static std::map<std::string, std::weak_ptr<const BumpyWorld>> made;
-  std::shared_ptr<const BumpyWorld> world = made[name].lock();
+std::shared_ptr<const FacingWorld> FacingWorld::of(const std::string& name) {
+  static std::map<std::string, std::weak_ptr<const FacingWorld>> made;
+  std::shared_ptr<const FacingWorld> world = made[name].lock();
   if (!world) {
-    world.reset(new BumpyWorld(name));
+    world.reset(new FacingWorld(name));
     made[name] = world;
   }
   return world;
 }
 
-Frame BumpyWorld::frame(std::size_t eye) const {
+std::vector<std::string> FacingWorld::scanned() {
+  if (!std::filesystem::exists(folders().cache / "libcgal-demo")) return {};
+  return {"bunny", "elephant_refined"};
+}
+
+Frame FacingWorld::frame(std::size_t eye) const {
   return {eye, cameras_[eye], Viewport{512, 512}, state_->view(), 0.0};
 }
 
-void LeftOut::count(const BumpyWorld& world, std::size_t eye,
+void LeftOut::count(const FacingWorld& world, std::size_t eye,
                     std::span<const std::uint64_t> left_out) {
   const std::span<const std::uint64_t> truth = world.back(eye);
   for (std::size_t word = 0; word < truth.size(); ++word) {
@@ -89,7 +111,7 @@ void LeftOut::count(const BumpyWorld& world, std::size_t eye,
   }
 }
 
-double LeftOut::share(const BumpyWorld& world) const {
+double LeftOut::share(const FacingWorld& world) const {
   return static_cast<double>(back) / static_cast<double>(world.back_count());
 }
 
