@@ -57,11 +57,13 @@ CullerInfo describe() {
       "bytes a triangle. Meshes with triangles in so mixed an order that clusters save no time get "
       "planes only"));
   info.cost =
-      "O(nodes seen from both sides), 16 children at a time, and O(runs of culled triangles)";
+      "O(nodes seen from both sides), 16 children at a time, and O(runs of culled triangles); with "
+      "mixed=test a plane test a triangle of clusters seen from both sides";
   info.limits =
-      "Keeps clusters that are partly seen from behind: on coarse meshes, with large clusters and "
-      "next to the mesh that is much. Keeps meshes that are open or cross themselves, and objects "
-      "around the eye, whole.";
+      "Keeps clusters that are partly seen from behind, unless mixed=test: on coarse meshes, with "
+      "large clusters and next to the mesh that is much. Where triangles come in no order, marking "
+      "them takes longer than testing every plane. Keeps meshes that are open or cross themselves, "
+      "and objects around the eye, whole.";
   info.sources = {"Johannsen and Carter 1998, Clustered Backface Culling",
                   "Zachmann, Computer-Graphik 2, SS 2012, slides 20-29"};
   return info;
