@@ -23,7 +23,7 @@ constexpr int inset_pixels = 24;  // of the frame, along each side
 constexpr double inset_zoom = 8.0;
 
 const std::array<const char*, triangle_class_count> labels = {
-    "kept and visible", "kept but invisible", "culled rightly", "culled wrongly (visible)"};
+    "kept and visible", "kept but invisible", "culled rightly", "culled though visible"};
 
 struct Rectangle {
   double left = 0.0;
@@ -129,9 +129,12 @@ void draw_legend(Canvas& canvas, const PictureInput& input, double left, double 
     const double y = top + legend_row * static_cast<double>(i);
     canvas.fill(left, y, 30.0, 16.0, class_colors[i]);
     canvas.outline(left, y, 30.0, 16.0, grey, 1.0);
-    canvas.text(
-        left + 42.0, y + 13.0, width - 42.0, 14.0, false,
-        std::string(labels[i]) + ": " + std::to_string(input.counts[i]) + " " + input.counted);
+    std::string text =
+        std::string(labels[i]) + ": " + std::to_string(input.counts[i]) + " " + input.counted;
+    if (i == static_cast<std::size_t>(TriangleClass::culled_wrongly) && input.excused > 0) {
+      text += ", " + std::to_string(input.excused) + " of them excused (disputed)";
+    }
+    canvas.text(left + 42.0, y + 13.0, width - 42.0, 14.0, false, text);
   }
 }
 

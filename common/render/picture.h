@@ -30,6 +30,8 @@ struct PictureInput {
   std::string title;                                         // scene, culler, frame
   std::array<std::uint64_t, triangle_class_count> counts{};  // for the legend
   std::string counted = "objects";                           // what the counts count
+  /// How many of those culled wrongly the judge excuses, all their lost samples being disputed.
+  std::uint64_t excused = 0;
   /// Pixels that the culler spoilt; (0, 0) is the lower left one. If there are any, the place where
   /// most of them are is framed and shown eight times enlarged.
   std::vector<glm::ivec2> wrong_pixels;

@@ -330,8 +330,7 @@ double CellSummary::metric(const std::string& name) const {
 bool is_free_of_errors(const CellSummary& cell) {
   if (!cell.judged || cell.false_px > 0 || (cell.drawn && cell.image_px > 0)) return false;
   if (cell.guarantee == Guarantee::image_exact) return true;
-  if (cell.guarantee == Guarantee::conservative && cell.false_jittered > 0) return false;
-  return cell.false_objects == 0;
+  return cell.false_jittered == 0 && cell.false_objects == 0;
 }
 
 std::vector<BlockSummary> summarise(const std::vector<JudgedCell>& cells) {

@@ -74,9 +74,9 @@ struct CellSummary {
   double metric(const std::string& name) const;
 };
 
-/// True if the judge found no false pixel, the image (if drawn) unchanged, and no false object; for
-/// a conservative method also no lost sample of J. An image_exact method promises only the pixels,
-/// so an object that it loses between them is no error.
+/// True if the judge found no false pixel, the image (if drawn) unchanged, no lost sample of J and
+/// no false object. An image_exact method promises only the pixels, so what it loses between them
+/// is no error.
 bool is_free_of_errors(const CellSummary& cell);
 
 struct BlockSummary {

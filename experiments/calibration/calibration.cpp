@@ -16,6 +16,7 @@ namespace {
 
 constexpr Viewport viewport{512, 512};
 constexpr int repeats = 15;
+constexpr int attempts = 5;
 
 // The sphere's triangles are as large in the image as those of a scanned figure that fills it: some
 // three pixels.
@@ -163,18 +164,23 @@ Cost cost_of_more(const std::function<void()>& larger, const std::function<void(
 }
 
 CostTable calibrate() {
-  CostTable table;
   Drawing drawing;
   const std::uint32_t all = drawing.sphere_triangles();
-  table.triangle = cost_of_more([&] { drawing.draw_sphere(all); },
-                                [&] { drawing.draw_sphere(all / 4); }, all - all / 4, repeats);
-  table.draw = cost_of_more([&] { drawing.draw_small(); }, [&] { drawing.draw_small_as_one(); },
-                            static_cast<double>(drawing.small_objects() - 1), repeats);
-  const double pieces = static_cast<double>(drawing.draw_pieces());
-  table.piece = cost_of_more([&] { drawing.draw_pieces(); }, [&] { drawing.draw_sphere(all / 2); },
-                             pieces - 1.0, repeats);
-  table.cluster_test = cluster_test_cost(repeats);
-  return table;
+  // A machine that is busy throughout may hide what the larger work costs; then it is done again.
+  for (int attempt = 0; attempt < attempts; ++attempt) {
+    CostTable table;
+    table.triangle = cost_of_more([&] { drawing.draw_sphere(all); },
+                                  [&] { drawing.draw_sphere(all / 4); }, all - all / 4, repeats);
+    table.draw = cost_of_more([&] { drawing.draw_small(); }, [&] { drawing.draw_small_as_one(); },
+                              static_cast<double>(drawing.small_objects() - 1), repeats);
+    const double pieces = static_cast<double>(drawing.draw_pieces());
+    table.piece = cost_of_more([&] { drawing.draw_pieces(); },
+                               [&] { drawing.draw_sphere(all / 2); }, pieces - 1.0, repeats);
+    table.cluster_test = cluster_test_cost(repeats);
+    if (table.triangle.ns > 0.0 && table.cluster_test.ns > 0.0) return table;
+  }
+  throw std::runtime_error(
+      "the costs of drawing and testing could not be told from what else the machine does");
 }
 
 }  // namespace vislab

@@ -22,7 +22,8 @@ Cost cost_of_more(const std::function<void()>& larger, const std::function<void(
 /// Draws a sphere and a field of tetrahedra on a device of its own, whole and in pieces, and tests
 /// clusters: the same work on every machine. Takes half a second where nothing else runs.
 /// Mesa takes the number of threads that it draws with from the process when its first context is
-/// made (LP_NUM_THREADS).
+/// made (LP_NUM_THREADS). Drawing a triangle and testing a cluster cost more than 0; throws
+/// std::runtime_error if that cannot be told in several attempts.
 CostTable calibrate();
 
 }  // namespace vislab

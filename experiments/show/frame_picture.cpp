@@ -57,6 +57,10 @@ void write_frame_picture(const Scene& scene, const Frame& frame, const FrameTrut
   input.classes = classes;
   input.title = title;
   input.counted = granularity == Granularity::object ? "objects" : "triangles";
+  const std::uint64_t lost = input.counts[static_cast<std::size_t>(TriangleClass::culled_wrongly)];
+  const std::uint64_t wrong =
+      granularity == Granularity::object ? verdict.false_objects : verdict.false_triangles;
+  input.excused = lost - std::min(lost, wrong);
   for (const auto& [x, y] : verdict.wrong_px) input.wrong_pixels.emplace_back(x, y);
   write_png(file, render_picture(input));
 }

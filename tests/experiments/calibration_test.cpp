@@ -40,6 +40,8 @@ TEST(Calibration, GivesEveryFigureOfTheTable) {
     EXPECT_LE(cost.low_ns, cost.ns) << quantity.name;
     EXPECT_GE(cost.high_ns, cost.ns) << quantity.name;
   }
+  EXPECT_GT(table.triangle.ns, 0.0);
+  EXPECT_GT(table.cluster_test.ns, 0.0);
 }
 
 TEST(CostTable, SaysHowManyTrianglesATestIsWorth) {

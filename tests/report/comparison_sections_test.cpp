@@ -146,11 +146,13 @@ TEST(CostsSection, HasARowForEachFigureOfEveryMachine) {
   }
   second.costs["two"] = CostTable::typical();
   const std::vector<Fields> rows = cost_fields({first, second});
-  ASSERT_EQ(rows.size(), 2 * cost_quantities().size());
-  EXPECT_EQ(rows[0].values.at("machine"), "one");
+  ASSERT_EQ(rows.size(), 2 * (cost_quantities().size() + 1));
+  EXPECT_EQ(rows[0].values.at("machine"), "one, 2 threads");
   EXPECT_EQ(rows[0].values.at("quantity"), "`triangle`");
   EXPECT_EQ(rows[0].values.at("cost"), "250 (240–260)");
-  EXPECT_EQ(rows.back().values.at("machine"), "two");
+  EXPECT_EQ(rows.back().values.at("machine"), "two, 2 threads");
+  EXPECT_EQ(rows.back().values.at("quantity"), "t_C ÷ r");
+  EXPECT_EQ(rows.back().values.at("cost"), "0.0040");
 }
 
 TEST(CostsSection, CountsTheCellsThatHaveNone) {
