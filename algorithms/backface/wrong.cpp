@@ -105,6 +105,38 @@ class NormalsAsVectors : public FacingCuller {
   std::size_t mesh_bytes() const override { return 0; }
 };
 
+/// The plane's equation in the world, summed up in float; what comes out below 0 is culled.
+class FloatSign : public FacingCuller {
+ public:
+  FloatSign(CullerInfo info, const ParameterValues& values)
+      : FacingCuller(std::move(info), culls_open(values)) {}
+
+ protected:
+  void clear() override {}
+  void add_mesh(MeshId, const Mesh&, const MeshFrame&, const BuildContext&) override {}
+  void mark_range(const ObjectView& view, std::uint32_t first, std::uint32_t count,
+                  std::uint64_t* back) override {
+    const Mesh& mesh = scene().meshes[view.mesh];
+    const glm::dmat4x3& transform = view.frame.objects.transforms[view.object];
+    const float outward = glm::determinant(glm::dmat3(transform)) < 0.0 ? -1.0F : 1.0F;
+    const Camera& camera = view.frame.camera;
+    const bool parallel = camera.lens.projection == Projection::orthographic;
+    const glm::vec3 eye(parallel ? camera.pose.back : camera.pose.eye);
+    const auto corner = [&](std::uint32_t vertex) {
+      return glm::vec3(transform * glm::dvec4(glm::dvec3(mesh.positions[vertex]), 1.0));
+    };
+    std::fill_n(back, words_of(count), 0);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const glm::uvec3& triangle = mesh.triangles[first + i];
+      const glm::vec3 a = corner(triangle.x);
+      const glm::vec3 normal = outward * glm::cross(corner(triangle.y) - a, corner(triangle.z) - a);
+      const float e = glm::dot(eye, normal) - (parallel ? 0.0F : glm::dot(a, normal));
+      back[i / 64] |= std::uint64_t{e < 0.0F} << (i % 64);
+    }
+  }
+  std::size_t mesh_bytes() const override { return 0; }
+};
+
 /// backface.cluster, with the rule for joining clusters as it is printed.
 class PrintedCostSign : public FacingCuller {
  public:
@@ -182,6 +214,15 @@ constexpr std::array mistakes{
             "leaves out front faces of sheared and flattened objects",
             "failures of engines with sheared transforms: filament issue 1520",
             make<NormalsAsVectors>},
+    Mistake{
+        "float_sign",
+        "Put into the plane's equation, p.n - a.n = e, the eye is in front of a face if e >= 0, "
+        "else the face is a back face",
+        "in float e is off by some 1e-7 of the coordinates: next to a plane, and everywhere far "
+        "from the origin, its sign is noise unless a margin is kept",
+        "leaves out front faces that are nearly edge-on, more of them the farther the scene is "
+        "from the world's origin",
+        "textbook 17.1, computed in float without a bound on its error", make<FloatSign>},
     Mistake{"class_centre", "A class of normals faces away if the normal in its middle does",
             "the class holds other normals, which may still face the eye",
             "leaves out front faces that are nearly edge-on, more of them the coarser the classes",
