@@ -2,10 +2,12 @@
 // images and by exact predicates.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <iostream>
 
 #include "common/judge/image_judge.h"
 #include "common/judge/metrics.h"
+#include "common/scene/generators/generators.h"
 #include "common/scene/library.h"
 #include "tests/algorithms/run_culler.h"
 #include "tests/geometry/exact_facing.h"
@@ -88,13 +90,9 @@ TEST_P(BackfaceOnMeshesThatCrossThemselves, KeepsThemWholeAndLosesNothing) {
 INSTANTIATE_TEST_SUITE_P(Scenes, BackfaceOnMeshesThatCrossThemselves, testing::Values("cow", "man"),
                          name_of);
 
-/// Of the conservative ones, on meshes that the eye is outside of. Those that need a device leave
-/// out nothing themselves; their contract is checked on the image.
-class EveryBackfaceCuller : public BackfaceOnRealMeshes {};
-
-TEST_P(EveryBackfaceCuller, LosesNoSampleAndNoFrontFaceAndChangesDisputedPixelsOnly) {
-  const Scene& scene = loaded_.scene;
-  const Path path = load_path(loaded_.default_path, scene, viewport, 3, folders());
+/// Holds every conservative culler to exact predicates, rays and images on a path. Those that need
+/// a device leave out nothing themselves; their contract is checked on the image.
+void expect_all_right(const Scene& scene, const Path& path) {
   RayCaster caster(scene, settings);
   ImageJudge images(scene);
   Registry registry;
@@ -146,8 +144,32 @@ TEST_P(EveryBackfaceCuller, LosesNoSampleAndNoFrontFaceAndChangesDisputedPixelsO
   }
 }
 
+class EveryBackfaceCuller : public BackfaceOnRealMeshes {};
+
+TEST_P(EveryBackfaceCuller, LosesNoSampleAndNoFrontFaceAndChangesDisputedPixelsOnly) {
+  expect_all_right(loaded_.scene,
+                   load_path(loaded_.default_path, loaded_.scene, viewport, 3, folders()));
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryBackfaceCuller,
-                         testing::Values("bunny", "elephant", "hares_14", "bumpy_high"), name_of);
+                         testing::Values("bunny", "elephant", "hares_14", "bumpy_high", "apartment",
+                                         "mirrored_shapes"),
+                         name_of);
+
+TEST(EveryBackfaceCullerOnAPath, LosesNothingWhereTheEyeGoesThroughASolid) {
+  BumpySphereParameters parameters;
+  parameters.subdivisions = 12;
+  parameters.bumps = Bumps::low;
+  Scene scene = make_bumpy_sphere(parameters);
+  scene.finish();
+  const Path path = load_path("through", scene, viewport, 9, folders());
+  const auto inside = std::ranges::count_if(path.frames, [](const PathFrame& frame) {
+    return glm::length(frame.camera.pose.eye) < 0.9;  // the sphere's radius is at least .93
+  });
+  EXPECT_GE(inside, 3);
+  EXPECT_LT(inside, 9);
+  expect_all_right(scene, path);
+}
 
 TEST(BackfaceOnTheCow, LosesWhatItShowsOfItsBackIfToldTo) {
   const Sum sum = judged("backface.polygon[open=cull]", load_scene("cow", folders()), 12);
