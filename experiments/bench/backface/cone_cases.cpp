@@ -1,5 +1,6 @@
 // Cones of normals on the bumpy spheres, and on ways around smaller ones: what a test finds and
-// takes, whole cullers, and how many nodes of a hierarchy are tested again from frame to frame.
+// takes, whole cullers, building and memory, and how many nodes of a hierarchy are tested again
+// from frame to frame.
 #include <cmath>
 #include <numbers>
 
@@ -7,6 +8,7 @@
 #include "algorithms/backface/cluster_runs.h"
 #include "common/scene/generators/generators.h"
 #include "experiments/bench/backface/cases.h"
+#include "experiments/bench/backface/costs.h"
 #include "experiments/bench/backface/world_contests.h"
 
 namespace vislab {
@@ -158,6 +160,8 @@ void add_cone_cases(std::vector<BenchCase>& cases) {
     to_ranges("backface.cone[form=sphere]", "backface.cone", false);
     to_ranges("backface.cone > backface.polygon", "backface.polygon", false);
     to_ranges("backface.hierarchical", "backface.cone", true);
+    add_costs(cases, "backface.cone", world);
+    add_costs(cases, "backface.hierarchical", world);
   }
   const std::string coherent = "backface.hierarchical";
   const std::string forgetful = "backface.hierarchical[coherence=off]";

@@ -1,20 +1,17 @@
 // Normal masks: what a look-up takes against a plane test and against reading alone, and what share
-// of the back faces they find in views of different width.
-#include <algorithm>
-#include <bit>
+// of the back faces they find in views of different width; whole cullers, building and memory.
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "algorithms/backface/back_bits.h"
 #include "algorithms/backface/masked_mesh.h"
 #include "algorithms/backface/plane_kernel.h"
 #include "common/culler/visible_set.h"
-#include "common/scene/generators/generators.h"
 #include "experiments/bench/backface/cases.h"
+#include "experiments/bench/backface/costs.h"
 #include "experiments/bench/backface/normals_field.h"
 #include "experiments/bench/backface/streaming_read.h"
-#include "experiments/bench/backface/triangle_side.h"
+#include "experiments/bench/backface/world_contests.h"
 
 namespace vislab {
 namespace {
@@ -22,38 +19,29 @@ namespace {
 using namespace backface_culling;
 
 constexpr std::uint32_t copies = 16;
-constexpr std::uint32_t subdivisions = 289;  // 1,002,252 triangles
 constexpr int default_n = 16;
 constexpr int default_sectors = 8;
 
-/// 16 times the triangles of the sphere with high bumps, seen from three radii, and what is known
-/// of them: their classes and their planes.
+/// 16 times the 1,002,252 triangles of the sphere with high bumps, seen by one of its world's eyes,
+/// and what is known of them: their classes, their planes, and which are back faces.
 class ManyTriangles {
  public:
   ManyTriangles() : masks_(DirectionCube(default_n), default_sectors), marker_(masks_) {
-    BumpySphereParameters parameters;
-    parameters.subdivisions = subdivisions;
-    parameters.bumps = Bumps::high;
-    Mesh mesh = bumpy_sphere_mesh(parameters);
+    const auto world = FacingWorld::of("high");
+    constexpr std::size_t eye = 20;
+    Mesh mesh = world->mesh();
     one_copy_ = static_cast<std::uint32_t>(mesh.triangles.size());
-    for (const glm::vec3& position : mesh.positions) mesh.bounds.extend(position);
+    is_back_.assign(world->back(eye).begin(), world->back(eye).end());
     mesh.triangles.reserve(std::size_t{copies} * one_copy_);
     for (std::uint32_t i = 1; i < copies; ++i) {
       mesh.triangles.insert(mesh.triangles.end(), mesh.triangles.begin(),
                             mesh.triangles.begin() + one_copy_);
     }
     frame_ = MeshFrame(mesh);
-    camera_.pose = look_at({1.7, 1.1, 2.2}, {0.0, 0.0, 0.0});
-    const double half = std::tan(std::numbers::pi / 6.0);  // 60 degrees
-    camera_.lens = {
-        Projection::perspective, -0.1 * half, 0.1 * half, -0.1 * half, 0.1 * half, 0.1, 10.0};
+    camera_ = world->camera(eye);
     eye_ = eye_in_mesh(camera_, glm::dmat4x3(1.0), frame_);
     classes_ = MaskedMesh(mesh, frame_, masks_.cube());
     planes_.emplace(mesh, frame_);
-    is_back_.resize(one_copy_);
-    for (std::uint32_t i = 0; i < one_copy_; ++i) {
-      is_back_[i] = glm::dot(scaled_plane(mesh, frame_, i), eye_->position) < 0.0;
-    }
     back_.resize(words_of(count()));
     // The mask of the whole view, which holds the sphere.
     masks_.start(camera_, 0);
@@ -86,7 +74,8 @@ class ManyTriangles {
     std::uint32_t found = 0;
     for (std::uint32_t i = 0; i < count(); ++i) {
       if ((back_[i / 64] >> (i % 64) & 1) == 0) continue;
-      if (!is_back_[i % one_copy_]) return false;
+      const std::uint32_t original = i % one_copy_;
+      if ((is_back_[original / 64] >> (original % 64) & 1) == 0) return false;
       ++found;
     }
     return found > count() / 8;
@@ -113,7 +102,7 @@ class ManyTriangles {
   MaskedMesh classes_;
   std::optional<PlaneArrays> planes_;
   BackMask view_mask_;
-  std::vector<bool> is_back_;  // of one copy
+  std::vector<std::uint64_t> is_back_;  // bits of one copy
   std::vector<std::uint64_t> back_;
   std::uint64_t sum_ = 0;
 };
@@ -202,52 +191,6 @@ Measurement share_found(double fov_deg, int sectors) {
   return {static_cast<double>(found) / static_cast<double>(back), right};
 }
 
-/// Cullers as a chain would call them, on one sphere of a million triangles.
-class CullersContest : public Contest {
- public:
-  CullersContest(const std::string& ours, const std::string& theirs)
-      : scene_(sphere()), state_(scene_), ours_(ours, scene_), theirs_(theirs, scene_) {
-    frame_.camera = {look_at({1.7, 1.1, 2.2}, {0.0, 0.0, 0.0}),
-                     perspective_lens(std::numbers::pi / 3.0, 1.0, 0.1, 10.0)};
-    frame_.objects = state_.view();
-  }
-
-  void ours() override { ours_.cull(next()); }
-  void theirs() override { theirs_.cull(next()); }
-  /// Exact planes leave out all that masks do.
-  bool equal() override {
-    ours();
-    theirs();
-    const std::vector<std::uint64_t> a = ours_.left_out();
-    const std::vector<std::uint64_t> b = theirs_.left_out();
-    std::uint64_t beyond = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      beyond += static_cast<std::uint64_t>(std::popcount(a[i] & ~b[i]));
-    }
-    return beyond <= 10;  // what float planes leave undecided
-  }
-
- private:
-  static Scene sphere() {
-    BumpySphereParameters parameters;
-    parameters.subdivisions = subdivisions;
-    parameters.bumps = Bumps::high;
-    Scene scene = make_bumpy_sphere(parameters);
-    scene.finish();
-    return scene;
-  }
-  const Frame& next() {
-    ++frame_.index;
-    return frame_;
-  }
-
-  Scene scene_;
-  SceneState state_;
-  Frame frame_;
-  TriangleSide ours_;
-  TriangleSide theirs_;
-};
-
 }  // namespace
 
 void add_mask_cases(std::vector<BenchCase>& cases) {
@@ -271,10 +214,12 @@ void add_mask_cases(std::vector<BenchCase>& cases) {
         {bench, name, "Mtriangle/s", "streaming read",
          [=] { return std::make_unique<LookUpContest>(triangles(), sectors, Against::reading); }});
   }
-  cases.push_back({bench, "1M triangles, culler", "us", "backface.polygon", [] {
-                     return std::make_unique<CullersContest>("backface.normal_mask",
-                                                             "backface.polygon");
-                   }});
+  for (const std::string world : {"sphere", "low", "high"}) {
+    cases.push_back({bench, world + ", to ranges", "share", "backface.polygon", [=] {
+                       return std::make_unique<CullersContest>(world, bench, "backface.polygon");
+                     }});
+    add_costs(cases, bench, world);
+  }
   for (const int fov_deg : {30, 45, 60, 90, 120}) {
     for (const int sectors : {1, 4, 8}) {
       const std::string side = std::to_string(sectors);
