@@ -26,8 +26,8 @@ ClusterSettings default_settings() {
 
 class TreeTests : public TestsContest {
  public:
-  TreeTests(const std::string& world, bool show_share, bool rows = false)
-      : TestsContest(world, show_share, rows),
+  TreeTests(const std::string& world, Shown shown, Meshlets::Form form)
+      : TestsContest(world, shown, form),
         tree_(world_->mesh(), frame_, default_settings<ClusterTree>()) {
     answer_.reserve(tree_.nodes().size());
     clusters_.resize(words_of(tree_.cluster_count()));
@@ -53,8 +53,8 @@ class TreeTests : public TestsContest {
 
 class FlatTests : public TestsContest {
  public:
-  FlatTests(const std::string& world, bool show_share, bool rows = false)
-      : TestsContest(world, show_share, rows),
+  FlatTests(const std::string& world, Shown shown, Meshlets::Form form)
+      : TestsContest(world, shown, form),
         flat_(world_->mesh(), frame_, default_settings<FlatClusters>()) {
     clusters_.resize(words_of(flat_.cluster_count()));
   }
@@ -98,11 +98,12 @@ Measurement bytes_per_triangle(const std::string& world_name) {
 /// What meshoptimizer's own cones find.
 Measurement their_share(const std::string& world_name) {
   const std::shared_ptr<const FacingWorld> world = FacingWorld::of(world_name);
-  Meshlets meshlets(world->mesh());
+  Meshlets meshlets(world->mesh(), Meshlets::Form::loop);
   LeftOut left_out;
   for (std::size_t eye = 0; eye < world->eye_count(); ++eye) {
     std::vector<std::uint64_t> bits(words_of(world->mesh().triangles.size()), 0);
-    meshlets.mark_left_out(meshlets.test(world->camera(eye).pose.eye), bits);
+    meshlets.test(world->camera(eye).pose.eye);
+    meshlets.mark_left_out(bits);
     left_out.count(*world, eye, bits);
   }
   return {left_out.share(*world), left_out.not_back == 0};
@@ -117,6 +118,11 @@ void add_to_ranges(std::vector<BenchCase>& cases, const std::string& world) {
                        return std::make_unique<CullersContest>(world, ours, "backface.polygon");
                      }});
   }
+  for (const char* ours : {"backface.cluster_tree", "backface.cluster"}) {
+    cases.push_back({ours, world + ", to ranges", "share", "peer.meshopt_cones", [=] {
+                       return std::make_unique<CullersContest>(world, ours, "peer.meshopt_cones");
+                     }});
+  }
 }
 
 }  // namespace
@@ -128,17 +134,19 @@ void add_cluster_cases(std::vector<BenchCase>& cases) {
     const auto kept = std::make_shared<std::shared_ptr<const FacingWorld>>();
     cases.push_back({"backface.cluster_tree", world, "share", peer, [=] {
                        *kept = FacingWorld::of(world);
-                       return std::make_unique<TreeTests>(world, true);
+                       return std::make_unique<TreeTests>(world, Shown::share,
+                                                          Meshlets::Form::loop);
                      }});
-    cases.push_back({"backface.cluster", world, "share", peer,
-                     [=] { return std::make_unique<FlatTests>(world, true); }});
-    for (const bool rows : {false, true}) {
-      const std::string against = peer + (rows ? ", in rows for AVX2" : "");
-      const std::string name = world + ", tests of 64 views" + (rows ? ", rows" : "");
+    cases.push_back(
+        {"backface.cluster", world, "share", peer,
+         [=] { return std::make_unique<FlatTests>(world, Shown::share, Meshlets::Form::loop); }});
+    for (const Meshlets::Form form : {Meshlets::Form::loop, Meshlets::Form::rows}) {
+      const std::string against = peer + name_of(form);
+      const std::string name = world + name_of_tests(form);
       cases.push_back({"backface.cluster_tree", name, "us", against,
-                       [=] { return std::make_unique<TreeTests>(world, false, rows); }});
+                       [=] { return std::make_unique<TreeTests>(world, Shown::speed, form); }});
       cases.push_back({"backface.cluster", name, "us", against,
-                       [=] { return std::make_unique<FlatTests>(world, false, rows); }});
+                       [=] { return std::make_unique<FlatTests>(world, Shown::speed, form); }});
     }
     cases.push_back({peer, world, "share", "", nullptr, [=] { return their_share(world); }});
     add_to_ranges(cases, world);

@@ -19,8 +19,8 @@ using namespace backface_culling;
 /// What backface.cone makes without parameters.
 class ConeTests : public TestsContest {
  public:
-  ConeTests(const std::string& world, bool show_share)
-      : TestsContest(world, show_share),
+  ConeTests(const std::string& world, Shown shown, Meshlets::Form form)
+      : TestsContest(world, shown, form),
         partition_(make_clusters(world_->mesh(), frame_, cone_clusters())),
         runs_(partition_),
         cones_(cones_of(world_->mesh(), frame_, partition_, ConeForm::apex)) {
@@ -144,10 +144,13 @@ void add_cone_cases(std::vector<BenchCase>& cases) {
     const auto kept = std::make_shared<std::shared_ptr<const FacingWorld>>();
     cases.push_back({"backface.cone", world, "share", peer, [=] {
                        *kept = FacingWorld::of(world);
-                       return std::make_unique<ConeTests>(world, true);
+                       return std::make_unique<ConeTests>(world, Shown::share,
+                                                          Meshlets::Form::loop);
                      }});
-    cases.push_back({"backface.cone", world + ", tests of 64 views", "us", peer,
-                     [=] { return std::make_unique<ConeTests>(world, false); }});
+    for (const Meshlets::Form form : {Meshlets::Form::loop, Meshlets::Form::rows}) {
+      cases.push_back({"backface.cone", world + name_of_tests(form), "us", peer + name_of(form),
+                       [=] { return std::make_unique<ConeTests>(world, Shown::speed, form); }});
+    }
     const auto to_ranges = [&](const std::string& ours, const std::string& theirs, bool last) {
       cases.push_back({ours, world + ", to ranges", "share", theirs, [=] {
                          auto contest = std::make_unique<CullersContest>(world, ours, theirs);

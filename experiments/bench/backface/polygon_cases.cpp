@@ -1,63 +1,30 @@
 // The tests of single triangles: the forms of backface.polygon, the projected plane, and the kernel
 // under them.
-#include <array>
 #include <cmath>
 
 #include "algorithms/backface/plane_kernel.h"
 #include "experiments/bench/backface/cases.h"
-#include "experiments/bench/backface/facing_world.h"
 #include "experiments/bench/backface/streaming_read.h"
-#include "experiments/bench/backface/triangle_side.h"
+#include "experiments/bench/backface/world_contests.h"
 
 namespace vislab {
 namespace {
 
-constexpr std::array<std::size_t, 4> eyes{0, 21, 42, 63};
-
-/// Whole cullers, from the frame to the ranges that are kept.
-class CullerContest : public Contest {
+/// Whole cullers that all look at every triangle. They leave out no front faces, and the same
+/// triangles but for a few of those that are nearly edge-on; an approximate one may do otherwise
+/// with a tenth.
+class FormsContest : public CullersContest {
  public:
-  CullerContest(const std::string& ours, const std::string& theirs)
-      : world_(FacingWorld::of("high")),
-        ours_(ours, world_->scene()),
-        theirs_(theirs, world_->scene()) {}
+  explicit FormsContest(const std::string& theirs)
+      : CullersContest("high", "backface.polygon", theirs, Shown::speed, 16) {}
 
-  void ours() override { run(ours_); }
-  void theirs() override { run(theirs_); }
-  double work() const override {
-    return 1e-6 * static_cast<double>(eyes.size() * world_->mesh().triangles.size());
-  }
-
-  /// Both leave out the same triangles but for a few of those that are nearly edge-on, and no front
-  /// faces; an approximate one also some of those.
   bool equal() override {
-    const double allowed = approximate() ? 0.1 : 0.0;
-    for (const std::size_t eye : eyes) {
-      LeftOut of_ours;
-      LeftOut of_theirs;
-      const Frame frame = world_->frame(eye);
-      ours_.cull(frame);
-      of_ours.count(*world_, eye, ours_.left_out());
-      theirs_.cull(frame);
-      of_theirs.count(*world_, eye, theirs_.left_out());
-      const auto back = static_cast<double>(of_ours.back);
-      if (of_ours.not_back > 0 || static_cast<double>(of_theirs.not_back) > allowed * back ||
-          std::abs(back - static_cast<double>(of_theirs.back)) > (1e-4 + allowed) * back) {
-        return false;
-      }
-    }
-    return true;
+    count();
+    const double allowed = their_info().guarantee == Guarantee::approximate ? 0.1 : 0.0;
+    const auto back = static_cast<double>(by_ours().back);
+    return by_ours().not_back == 0 && static_cast<double>(by_theirs().not_back) <= allowed * back &&
+           std::abs(back - static_cast<double>(by_theirs().back)) <= (1e-4 + allowed) * back;
   }
-
- private:
-  void run(TriangleSide& side) {
-    for (const std::size_t eye : eyes) side.cull(world_->frame(eye));
-  }
-  bool approximate() const { return theirs_.culler().info().guarantee == Guarantee::approximate; }
-
-  std::shared_ptr<const FacingWorld> world_;
-  TriangleSide ours_;
-  TriangleSide theirs_;
 };
 
 /// The kernel alone, from an eye in the mesh's frame to bits.
@@ -129,9 +96,8 @@ class KernelContest : public Contest {
 
 void add_polygon_cases(std::vector<BenchCase>& cases) {
   const auto add_culler = [&](const std::string& name, const std::string& against) {
-    cases.push_back({"backface.polygon", name, "Mtri/s", against, [against] {
-                       return std::make_unique<CullerContest>("backface.polygon", against);
-                     }});
+    cases.push_back({"backface.polygon", name, "Mtriangle/s", against,
+                     [against] { return std::make_unique<FormsContest>(against); }});
   };
   add_culler("computed", "backface.polygon[form=computed]");
   add_culler("stored_normal", "backface.polygon[form=stored_normal]");
@@ -139,7 +105,7 @@ void add_polygon_cases(std::vector<BenchCase>& cases) {
   add_culler("projected", "backface.projected_plane");
   const auto add_kernel = [&](const std::string& name, const std::string& against,
                               KernelContest::Against way) {
-    cases.push_back({"backface.polygon", name, "Mtri/s", against,
+    cases.push_back({"backface.polygon", name, "Mtriangle/s", against,
                      [way] { return std::make_unique<KernelContest>(way); }});
   };
   add_kernel("kernel", "its scalar twin", KernelContest::Against::scalar);

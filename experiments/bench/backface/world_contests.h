@@ -12,16 +12,29 @@
 
 namespace vislab {
 
+/// What a contest reports beside the ratio of the times.
+enum class Shown {
+  share,  // of the back faces that ours leaves out
+  speed   // the time or the rate of ours
+};
+
+/// For the names of cases of TestsContest, by what they are timed against.
+inline std::string name_of_tests(Meshlets::Form form) {
+  return std::string(", tests of 64 views") + (form == Meshlets::Form::rows ? ", rows" : "");
+}
+inline std::string name_of(Meshlets::Form form) {
+  return form == Meshlets::Form::rows ? ", in rows with the same SIMD" : "";
+}
+
 /// The tests of all clusters of a mesh from all eyes of a world: ours gives a bit for each cluster,
-/// theirs a list of those kept, or with `rows` a byte for each (Meshlets::test_rows).
+/// theirs what Meshlets::test makes in its form. Equal as long as no other triangles go.
 class TestsContest : public Contest {
  public:
-  TestsContest(const std::string& world, bool show_share, bool rows = false)
+  TestsContest(const std::string& world, Shown shown, Meshlets::Form form)
       : world_(FacingWorld::of(world)),
         frame_(world_->mesh()),
-        meshlets_(world_->mesh()),
-        show_share_(show_share),
-        rows_(rows) {
+        meshlets_(world_->mesh(), form),
+        shown_(shown) {
     for (std::size_t eye = 0; eye < world_->eye_count(); ++eye) {
       eyes_.push_back(*backface_culling::eye_in_mesh(world_->camera(eye),
                                                      world_->scene().objects[0].transform, frame_));
@@ -33,11 +46,7 @@ class TestsContest : public Contest {
   }
   void theirs() override {
     for (std::size_t eye = 0; eye < eyes_.size(); ++eye) {
-      if (rows_) {
-        meshlets_.test_rows(world_->camera(eye).pose.eye);
-      } else {
-        meshlets_.test(world_->camera(eye).pose.eye);
-      }
+      meshlets_.test(world_->camera(eye).pose.eye);
     }
   }
   bool equal() override {
@@ -50,13 +59,14 @@ class TestsContest : public Contest {
       mark(bits);
       ours.count(*world_, eye, bits);
       std::ranges::fill(bits, 0);
-      meshlets_.mark_left_out(meshlets_.test(world_->camera(eye).pose.eye), bits);
+      meshlets_.test(world_->camera(eye).pose.eye);
+      meshlets_.mark_left_out(bits);
       theirs.count(*world_, eye, bits);
     }
     share_ = ours.share(*world_);
     return ours.not_back == 0 && theirs.not_back == 0;
   }
-  double figure() const override { return show_share_ ? share_ : Contest::figure(); }
+  double figure() const override { return shown_ == Shown::share ? share_ : Contest::figure(); }
 
  protected:
   /// Bits of the clusters that are seen from behind.
@@ -71,44 +81,68 @@ class TestsContest : public Contest {
  private:
   std::vector<backface_culling::MeshEye> eyes_;
   Meshlets meshlets_;
-  bool show_share_, rows_;
+  Shown shown_;
   double share_ = 0.0;
 };
 
-/// Two cullers or chains from all eyes, up to the ranges of triangles that they keep. The figure is
-/// our share of the back faces; equal as long as neither leaves out anything else.
+/// Two cullers or chains, up to the ranges of triangles that they keep: from all eyes of a world,
+/// or from every `step`-th. Equal as long as neither leaves out anything but back faces.
 class CullersContest : public Contest {
  public:
-  CullersContest(const std::string& world, const std::string& ours, const std::string& theirs)
+  CullersContest(const std::string& world, const std::string& ours, const std::string& theirs,
+                 Shown shown = Shown::share, std::size_t step = 1)
       : world_(FacingWorld::of(world)),
         ours_(ours, world_->scene()),
-        theirs_(theirs, world_->scene()) {}
+        theirs_(theirs, world_->scene()),
+        shown_(shown),
+        step_(step) {}
 
   void ours() override { run(ours_); }
   void theirs() override { run(theirs_); }
   bool equal() override {
-    const LeftOut by_ours = left_out(ours_);
-    share_ = by_ours.share(*world_);
-    return by_ours.not_back == 0 && left_out(theirs_).not_back == 0;
+    count();
+    return by_ours_.not_back == 0 && by_theirs_.not_back == 0;
   }
-  double figure() const override { return share_; }
+  double figure() const override {
+    return shown_ == Shown::share ? by_ours_.share(*world_) : Contest::figure();
+  }
+  /// Of a speed: millions of triangles, for all eyes together.
+  double work() const override {
+    const std::size_t calls = (world_->eye_count() + step_ - 1) / step_;
+    return shown_ == Shown::speed
+               ? 1e-6 * static_cast<double>(calls * world_->mesh().triangles.size())
+               : Contest::work();
+  }
+
+ protected:
+  void count() {
+    by_ours_ = left_out(ours_);
+    by_theirs_ = left_out(theirs_);
+  }
+  /// By the last count().
+  const LeftOut& by_ours() const { return by_ours_; }
+  const LeftOut& by_theirs() const { return by_theirs_; }
+  const CullerInfo& their_info() const { return theirs_.culler().info(); }
 
  private:
   void run(TriangleSide& side) {
-    for (std::size_t eye = 0; eye < world_->eye_count(); ++eye) side.cull(world_->frame(eye));
+    for (std::size_t eye = 0; eye < world_->eye_count(); eye += step_) {
+      side.cull(world_->frame(eye));
+    }
   }
   LeftOut left_out(TriangleSide& side) {
     LeftOut sum;
-    for (std::size_t eye = 0; eye < world_->eye_count(); ++eye) {
+    for (std::size_t eye = 0; eye < world_->eye_count(); eye += step_) {
       side.cull(world_->frame(eye));
       sum.count(*world_, eye, side.left_out());
     }
     return sum;
   }
-
   std::shared_ptr<const FacingWorld> world_;
   TriangleSide ours_, theirs_;
-  double share_ = 0.0;
+  Shown shown_;
+  std::size_t step_;
+  LeftOut by_ours_, by_theirs_;
 };
 
 }  // namespace vislab
