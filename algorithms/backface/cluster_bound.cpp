@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "algorithms/backface/magnitudes.h"
 #include "algorithms/backface/triangle_clusters.h"
 #include "common/geometry/rounding.h"
 
@@ -12,14 +13,13 @@ namespace {
 
 constexpr double float_epsilon = std::numeric_limits<float>::epsilon();
 
+/// What floats can tell of, in units of the mesh: far from where sums would overflow.
+constexpr double farthest = 1e30;
+
 /// Bound on the error of n.p + d, where p is at most as far from the mesh's middle as `reach` along
 /// each axis: of the plane, and of the three products and sums in double.
 double value_error(const MeshFrame& frame, double reach) {
   return 1.01 * plane_error * (frame.size + 3.0 * reach);
-}
-
-double largest(const glm::dvec3& v) {
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
 /// Least n_i.(p_i - c).
@@ -31,14 +31,15 @@ double least_offset(std::span<const glm::dvec4> planes, const glm::dvec3& c) {
   return least;
 }
 
-glm::vec3 best_origin(std::span<const glm::dvec4> planes, const Aabb& box) {
-  glm::vec3 best(box.center());
-  double greatest = least_offset(planes, glm::dvec3(best));
+glm::vec3 best_origin(std::span<const glm::dvec4> planes, const Aabb& box, double unit) {
+  glm::vec3 best(box.center() / unit);
+  double greatest = least_offset(planes, glm::dvec3(best) * unit);
   for (unsigned corner = 0; corner < 8; ++corner) {
-    const glm::vec3 c((corner & 1U) != 0 ? box.max.x : box.min.x,
-                      (corner & 2U) != 0 ? box.max.y : box.min.y,
-                      (corner & 4U) != 0 ? box.max.z : box.min.z);
-    const double offset = least_offset(planes, glm::dvec3(c));
+    const glm::dvec3 place((corner & 1U) != 0 ? box.max.x : box.min.x,
+                           (corner & 2U) != 0 ? box.max.y : box.min.y,
+                           (corner & 4U) != 0 ? box.max.z : box.min.z);
+    const glm::vec3 c(place / unit);
+    const double offset = least_offset(planes, glm::dvec3(c) * unit);
     if (offset > greatest) {
       greatest = offset;
       best = c;
@@ -53,18 +54,20 @@ ClusterBound bound_of(std::span<const glm::dvec4> planes, const Aabb& box, const
                       Origin origin) {
   ClusterBound bound;
   if (planes.empty()) return bound;
+  const double unit = frame.unit();
   switch (origin) {
     case Origin::mesh:
-      bound.origin = glm::vec3(-frame.middle);
+      bound.origin = glm::vec3(-frame.middle / unit);
       break;
     case Origin::centre:
-      bound.origin = glm::vec3(box.center());
+      bound.origin = glm::vec3(box.center() / unit);
       break;
     case Origin::best:
-      bound.origin = best_origin(planes, box);
+      bound.origin = best_origin(planes, box, unit);
       break;
   }
-  const glm::dvec3 c(bound.origin);
+  if (!(largest(glm::dvec3(bound.origin)) < farthest)) return {};
+  const glm::dvec3 c = glm::dvec3(bound.origin) * unit;
   glm::dvec3 low(std::numeric_limits<double>::infinity());
   glm::dvec3 high = -low;
   double least = std::numeric_limits<double>::infinity();
@@ -82,21 +85,29 @@ ClusterBound bound_of(std::span<const glm::dvec4> planes, const Aabb& box, const
     bound.high[axis] = round_up(high[axis] + plane_error);
   }
   const double error = value_error(frame, largest(c));
-  bound.back = round_down(least - error);
-  bound.front = round_up(greatest + error);
+  bound.back = round_down((least - error) / unit);
+  bound.front = round_up((greatest + error) / unit);
   return bound;
 }
 
 ClusterEye cluster_eye(const MeshEye& eye, const MeshFrame& frame, double reach) {
   ClusterEye result;
-  result.position = glm::vec3(eye.position);
   result.perspective = eye.position.w != 0.0;
+  // Of a direction only its signs and ratios matter.
+  const double unit = result.perspective ? frame.unit() : power_of_two_from(eye.magnitude());
+  const double magnitude = eye.magnitude() / unit;
+  const double error = eye.error / unit;
   // With X = |eye| + |c|: e - c is off by at most an epsilon times X and the eye's own error, along
   // each of three axes, of which a unit normal sees 1.74; three products, three sums and d take at
   // most 5.5 X + |d| half epsilons more, and |d| is below 2 (size + |c|).
-  const double distance = eye.magnitude() + eye.position.w * (reach + frame.size);
-  result.limit =
-      static_cast<float>((12.0 * float_epsilon * distance + 2.0 * eye.error) * (1.0 + 1e-6));
+  const double distance = magnitude + (result.perspective ? reach + frame.size / unit : 0.0);
+  if (!(distance < farthest) || !(error < farthest)) {
+    result.limit = std::numeric_limits<float>::infinity();
+    return result;
+  }
+  result.position = glm::vec3(glm::dvec3(eye.position) / unit);
+  // What falls below the smallest float is far less than the limit.
+  result.limit = static_cast<float>((12.0 * float_epsilon * distance + 2.0 * error) * (1.0 + 1e-6));
   return result;
 }
 

@@ -27,7 +27,8 @@ enum class Origin {
   best     // there or at a corner of the box, where d is greatest
 };
 
-/// In the mesh's frame, relative to its middle. The default is never seen from behind.
+/// In the mesh's frame, relative to its middle, lengths in terms of MeshFrame::unit(). The default
+/// faces neither way.
 struct ClusterBound {
   glm::vec3 origin{0.0F};                                // c, exact
   glm::vec3 low{0.0F};                                   // n
@@ -37,19 +38,22 @@ struct ClusterBound {
 };
 
 /// The bound of triangles with these unit planes (unit_plane) in this box, which is relative to the
-/// mesh's middle. Without planes, the default. O(planes).
+/// mesh's middle, in the mesh's own lengths. Without planes, or with an origin so far away that
+/// floats cannot tell, the default. O(planes).
 ClusterBound bound_of(std::span<const glm::dvec4> planes, const Aabb& box, const MeshFrame& frame,
                       Origin origin);
 
-/// The eye rounded to float, as bounds are tested with it.
+/// The eye rounded to float, as bounds are tested with it: in their unit, or a direction of length
+/// about 1.
 struct ClusterEye {
   glm::vec3 position{0.0F};
   bool perspective = true;
-  /// A value below -limit is below zero for the exact eye and planes.
+  /// A value below -limit is below zero for the exact eye and planes. Infinite, at the origin, for
+  /// eyes so far away that floats cannot tell: no cluster then faces either way.
   float limit = 0.0F;
 };
 
-/// `reach` is the largest absolute coordinate of all clusters' origins.
+/// `reach` is the largest absolute coordinate of all clusters' origins, in their unit.
 ClusterEye cluster_eye(const MeshEye& eye, const MeshFrame& frame, double reach);
 
 enum class ClusterFacing { mixed, back, front };

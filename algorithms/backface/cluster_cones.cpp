@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "algorithms/backface/magnitudes.h"
 #include "algorithms/backface/normal_cone.h"
 #include "common/geometry/rounding.h"
 
@@ -11,12 +12,6 @@ namespace vislab::backface_culling {
 namespace {
 
 constexpr double float_epsilon = std::numeric_limits<float>::epsilon();
-
-double power_of_two_above(double size) {
-  int exponent = 0;
-  std::frexp(size, &exponent);
-  return std::ldexp(1.0, exponent);
-}
 
 /// Rounded to float and back, in terms of `unit`.
 glm::dvec3 rounded(const glm::dvec3& point, double unit) {
@@ -57,7 +52,7 @@ glm::dvec4 sphere_around(std::span<const glm::dvec3> points) {
 }  // namespace
 
 ClusterCones::ClusterCones(ConeForm form, const MeshFrame& frame)
-    : form_(form), unit_(power_of_two_above(frame.size)) {}
+    : form_(form), unit_(frame.unit()) {}
 
 float& ClusterCones::at(Row row) {
   const std::size_t lane = count_ % 64;
@@ -145,17 +140,16 @@ ConeEye::ConeEye(const MeshEye& eye, double unit) : perspective(eye.position.w !
     position /= length;
     error /= length;
   }
-  const double largest =
-      std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)});
+  const double reach = largest(position);
   x = static_cast<float>(position.x);
   y = static_cast<float>(position.y);
   z = static_cast<float>(position.z);
   // The eye is off by its error, and by half an epsilon in each coordinate after rounding to float;
   // that moves axis . w and sine |w| by sqrt(3) times as much each.
-  limit = round_up(4.0 * (error + float_epsilon * largest));
+  limit = round_up(4.0 * (error + float_epsilon * reach));
   // Squares leave float, and nothing is known of directions without length.
   constexpr double farthest = 1e15;
-  if (!(largest < farthest) || !(error < farthest)) {
+  if (!(reach < farthest) || !(error < farthest)) {
     x = y = z = 0.0F;
     limit = std::numeric_limits<float>::infinity();
   }

@@ -10,7 +10,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
+
+#include "common/simd/mask_bits-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vislab::backface_culling::HWY_NAMESPACE {
@@ -35,11 +36,7 @@ struct EyeVectors {
 };
 
 HWY_INLINE std::uint32_t bits_of(hn::Mask<Floats> mask) {
-  std::array<std::uint8_t, 8> bytes{};
-  hn::StoreMaskBits(Floats(), mask, bytes.data());
-  std::uint16_t bits = 0;
-  std::memcpy(&bits, bytes.data(), sizeof bits);
-  return bits;
+  return simd::HWY_NAMESPACE::mask_bits(Floats(), mask);
 }
 
 /// The ways from the origins of some lanes to the eye, and the extreme values along them.

@@ -9,7 +9,8 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <cstring>
+
+#include "common/simd/mask_bits-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vislab::backface_culling::HWY_NAMESPACE {
@@ -22,9 +23,7 @@ using Part = ClusterPlanes::Part;
 using Floats = hn::CappedTag<float, ClusterPlanes::width>;
 
 HWY_INLINE std::uint64_t bits_of(hn::Mask<Floats> mask) {
-  std::array<std::uint8_t, 8> bytes{};
-  hn::StoreMaskBits(Floats(), mask, bytes.data());
-  return bytes[0];
+  return simd::HWY_NAMESPACE::mask_bits(Floats(), mask);
 }
 
 void mark_parts(const Block* blocks, std::span<const Part> parts,

@@ -29,7 +29,7 @@ class ClusterTree {
   /// Every node's bound is made from the planes below it, about its own origin: those of its
   /// children hold for other origins.
   std::span<const ClusterTreeNode> nodes() const { return nodes_; }  // empty: nothing to test
-  /// Largest absolute coordinate of all origins, for cluster_eye().
+  /// Largest absolute coordinate of all bounds' origins, for cluster_eye().
   double reach() const { return reach_; }
   std::uint32_t cluster_count() const { return cluster_count_; }
   /// Clusters that lie below a child (node * 16 + lane), numbered in the tree's order.

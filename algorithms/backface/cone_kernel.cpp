@@ -6,8 +6,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include <cstring>
-#include <type_traits>
+#include "common/simd/mask_bits-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vislab::backface_culling::HWY_NAMESPACE {
@@ -18,15 +17,8 @@ using Floats = hn::CappedTag<float, 16>;
 using FloatVector = hn::Vec<Floats>;
 constexpr std::size_t lanes = HWY_MIN(HWY_LANES(float), 16);
 
-template <typename Mask>
-HWY_INLINE std::uint64_t bits_of(Mask mask) {
-  // Read back in the size it was written in: the processor then passes it on without memory.
-  using Bits = std::conditional_t<lanes == 16, std::uint16_t, std::uint8_t>;
-  std::array<std::uint8_t, 8> bytes{};
-  hn::StoreMaskBits(Floats(), mask, bytes.data());
-  Bits bits = 0;
-  std::memcpy(&bits, bytes.data(), sizeof bits);
-  return bits;
+HWY_INLINE std::uint64_t bits_of(hn::Mask<Floats> mask) {
+  return simd::HWY_NAMESPACE::mask_bits(Floats(), mask);
 }
 
 HWY_INLINE FloatVector dot(FloatVector ax, FloatVector ay, FloatVector az, FloatVector bx,

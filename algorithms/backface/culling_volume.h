@@ -13,7 +13,7 @@
 namespace vislab::backface_culling {
 
 /// Volume of the points of a box from which if(e - c; n, m).(e - c) <= d, in closed form. Of an
-/// empty box, 0.
+/// empty box, 0. Both in the same unit.
 double culling_volume(const ClusterBound& bound, const Aabb& box);
 
 /// Which sign stands before t_C / r in the rule for joining.

@@ -18,7 +18,7 @@ class FlatClusters {
   FlatClusters(const Mesh& mesh, const MeshFrame& frame, const ClusterSettings& settings);
 
   std::span<const ClusterBlock> blocks() const { return blocks_; }
-  /// Largest absolute coordinate of all origins, for cluster_eye().
+  /// Largest absolute coordinate of all bounds' origins, for cluster_eye().
   double reach() const { return reach_; }
   std::size_t cluster_count() const { return first_run_.size() - 1; }
   std::size_t triangle_count() const { return triangle_count_; }

@@ -4,20 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "algorithms/backface/magnitudes.h"
+
 namespace vislab::backface_culling {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double float_epsilon = std::numeric_limits<float>::epsilon();
-
-double row_sum(const glm::dmat3& m) {
-  const glm::dvec3 sums = glm::abs(m[0]) + glm::abs(m[1]) + glm::abs(m[2]);
-  return std::max({sums.x, sums.y, sums.z});
-}
-
-double largest(const glm::dvec3& v) {
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
 
 }  // namespace
 
@@ -28,6 +21,8 @@ MeshFrame::MeshFrame(const Mesh& mesh)
       // The middle is rounded, and so may be the differences.
       size((1.0 + 4.0 * epsilon) * std::max(largest(glm::dvec3(mesh.bounds.min) - middle),
                                             largest(glm::dvec3(mesh.bounds.max) - middle))) {}
+
+double MeshFrame::unit() const { return power_of_two_from(size); }
 
 std::optional<MeshEye> eye_in_mesh(const Camera& camera, const glm::dmat4x3& transform,
                                    const MeshFrame& mesh) {

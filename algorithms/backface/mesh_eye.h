@@ -28,6 +28,10 @@ struct MeshFrame {
 
   glm::dvec3 middle{0.0};  // of the mesh's box
   double size = 0.0;       // largest absolute coordinate relative to the middle
+
+  /// A power of two that no coordinate relative to the middle exceeds: what floats are given in, so
+  /// that they stay far from the ends of their range.
+  double unit() const;
 };
 
 /// Takes the eye of a camera into the frame of a mesh that an object places by `transform`. Nothing

@@ -10,10 +10,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
-#include <type_traits>
 
 #include "algorithms/backface/back_bits.h"
+#include "algorithms/backface/magnitudes.h"
+#include "common/simd/mask_bits-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vislab::backface_culling::HWY_NAMESPACE {
@@ -24,15 +24,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::CappedTag<float, PlaneArrays::padding>;
 constexpr std::uint32_t lanes = HWY_MIN(HWY_LANES(float), PlaneArrays::padding);
 
-template <typename Mask>
-HWY_INLINE std::uint64_t bits_of(Mask mask) {
-  // Read back in the size it was written in: the processor then passes it on without memory.
-  using Bits = std::conditional_t<lanes == 16, std::uint16_t, std::uint8_t>;
-  std::array<std::uint8_t, 8> bytes{};
-  hn::StoreMaskBits(Floats(), mask, bytes.data());
-  Bits bits = 0;
-  std::memcpy(&bits, bytes.data(), sizeof bits);
-  return bits;
+HWY_INLINE std::uint64_t bits_of(hn::Mask<Floats> mask) {
+  return simd::HWY_NAMESPACE::mask_bits(Floats(), mask);
 }
 
 void mark(const PlaneArrays& planes, const PlaneTest& test, std::uint32_t first,
@@ -73,25 +66,12 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace vislab::backface_culling {
-namespace {
-
-/// The least power of two that is no less than `value`; 1 for 0.
-double power_above(double value) {
-  if (!(value > 0.0)) return 1.0;
-  int exponent = 0;
-  const double fraction = std::frexp(value, &exponent);
-  return std::ldexp(1.0, fraction == 0.5 ? exponent - 1 : exponent);
-}
-
-}  // namespace
-
-double plane_unit(const MeshFrame& frame) { return power_above(frame.size); }
 
 std::array<float, 4> rounded_plane(const Mesh& mesh, const MeshFrame& frame,
                                    std::uint32_t triangle) {
   const glm::dvec4 plane = scaled_plane(mesh, frame, triangle);
   return {static_cast<float>(plane.x), static_cast<float>(plane.y), static_cast<float>(plane.z),
-          static_cast<float>(plane.w / plane_unit(frame))};
+          static_cast<float>(plane.w / frame.unit())};
 }
 
 PlaneArrays::PlaneArrays(const Mesh& mesh, const MeshFrame& frame)
@@ -106,7 +86,7 @@ PlaneArrays::PlaneArrays(const Mesh& mesh, const MeshFrame& frame)
 PlaneTest plane_test(const MeshEye& eye, const MeshFrame& frame) {
   // Largest sum that a test can come to: 1/2 to 1 after scaling, w included. What then falls below
   // the smallest float is far less than the limit.
-  const double scale = 1.0 / power_above(eye.magnitude() + eye.position.w * frame.size);
+  const double scale = 1.0 / power_of_two_from(eye.magnitude() + eye.position.w * frame.size);
   MeshEye scaled = eye;
   scaled.position = glm::dvec4(glm::dvec3(eye.position) * scale, eye.position.w);
   scaled.error *= scale;
@@ -114,7 +94,7 @@ PlaneTest plane_test(const MeshEye& eye, const MeshFrame& frame) {
   scaled_frame.size *= scale;
   return {static_cast<float>(scaled.position.x), static_cast<float>(scaled.position.y),
           static_cast<float>(scaled.position.z),
-          static_cast<float>(eye.position.w * plane_unit(frame) * scale),
+          static_cast<float>(eye.position.w * frame.unit() * scale),
           behind_limit_float(scaled, scaled_frame)};
 }
 

@@ -19,11 +19,7 @@
 
 namespace vislab::backface_culling {
 
-/// A power of two that no coordinate of a mesh relative to its middle exceeds: what distances of
-/// planes are given in.
-double plane_unit(const MeshFrame& frame);
-
-/// scaled_plane of a triangle, its distance in terms of plane_unit(), rounded to float.
+/// scaled_plane of a triangle, its distance in terms of MeshFrame::unit(), rounded to float.
 std::array<float, 4> rounded_plane(const Mesh& mesh, const MeshFrame& frame,
                                    std::uint32_t triangle);
 

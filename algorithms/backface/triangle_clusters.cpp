@@ -53,7 +53,7 @@ class Builder {
     const auto count = static_cast<std::uint32_t>(items_.size());
     size_ = std::clamp(count / settings.least_count, 1U, settings.size);
     smallest_ = std::max(1U, size_ / most_division);
-    const auto reach = static_cast<float>(settings.eye_distance * frame.size);
+    const auto reach = static_cast<float>(settings.eye_distance * frame.size / frame.unit());
     eyes_.extend(glm::vec3(-reach));
     eyes_.extend(glm::vec3(reach));
     eyes_volume_ = 8.0 * double(reach) * double(reach) * double(reach);
@@ -196,7 +196,7 @@ class Builder {
   TriangleClusters& clusters_;
   std::uint32_t size_ = 1;
   std::uint32_t smallest_ = 1;
-  Aabb eyes_;  // where eyes may be
+  Aabb eyes_;  // where eyes may be, in the unit of bounds
   double eyes_volume_ = 1.0;
   std::vector<Item> items_, rest_;
   std::vector<std::uint32_t> apart_;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "algorithms/backface/magnitudes.h"
+
 namespace vislab::backface_culling {
 namespace {
 
@@ -13,15 +15,6 @@ constexpr std::size_t part_count = 16;
 constexpr std::size_t entry_count = 4096;
 constexpr std::size_t most_masks = entry_count / 2;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
-double greatest_row_sum(const glm::dmat3& m) {
-  const glm::dvec3 sums = glm::abs(m[0]) + glm::abs(m[1]) + glm::abs(m[2]);
-  return std::max({sums.x, sums.y, sums.z});
-}
-
-double greatest(const glm::dvec3& v) {
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
 
 std::size_t slot_of(const glm::dmat3& linear) {
   std::uint64_t hash = 0;
@@ -60,9 +53,8 @@ void ViewMasks::select(const glm::dmat3& linear) {
   part_->linear = linear;
   part_->inverse = glm::inverse(linear);
   // With |linear * inverse - 1| < 1/2 the true inverse is at most twice the computed one.
-  const bool regular = greatest_row_sum(linear * part_->inverse - glm::dmat3(1.0)) < 0.5;
-  part_->inverse_size =
-      regular ? greatest_row_sum(part_->inverse) : std::numeric_limits<double>::infinity();
+  const bool regular = row_sum(linear * part_->inverse - glm::dmat3(1.0)) < 0.5;
+  part_->inverse_size = regular ? row_sum(part_->inverse) : std::numeric_limits<double>::infinity();
   const auto lines = static_cast<std::size_t>(lines_.count());
   part_->corner.assign(lines * lines, 0);
   part_->masks.clear();
@@ -124,8 +116,8 @@ BackMask ViewMasks::test(const glm::dvec3& direction) {
   const glm::dvec3 rest = glm::abs(linear * local - direction) +
                           8.0 * epsilon * (sizes * glm::abs(local)) +
                           glm::dvec3(64.0 * epsilon * (1.0 + glm::length(direction)));
-  const double off = 2.0 * part_->inverse_size * greatest(rest);
-  const double size = greatest(local);
+  const double off = 2.0 * part_->inverse_size * largest(rest);
+  const double size = largest(local);
   MeshDirection scaled;
   scaled.direction = glm::vec3(local / size);
   scaled.error = static_cast<float>(std::min(off / size * (1.0 + 0x1p-20) + 0x1p-24, 2.0));

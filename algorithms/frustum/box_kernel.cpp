@@ -6,8 +6,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include <cstring>
-#include <type_traits>
+#include "common/simd/mask_bits-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vislab::frustum_culling::HWY_NAMESPACE {
@@ -55,15 +54,8 @@ struct PlaneVectors {
   }
 };
 
-template <typename Mask>
-HWY_INLINE std::uint64_t bits_of(Mask mask) {
-  // Read back in the size it was written in: the processor then passes it on without memory.
-  using Bits = std::conditional_t<lanes == 16, std::uint16_t, std::uint8_t>;
-  std::array<std::uint8_t, 8> bytes{};
-  hn::StoreMaskBits(Floats(), mask, bytes.data());
-  Bits bits = 0;
-  std::memcpy(&bits, bytes.data(), sizeof bits);
-  return bits;
+HWY_INLINE std::uint64_t bits_of(hn::Mask<Floats> mask) {
+  return simd::HWY_NAMESPACE::mask_bits(Floats(), mask);
 }
 
 /// The least values of a block's boxes over some planes, in registers.

@@ -10,6 +10,8 @@
 #include <bit>
 #include <cstring>
 
+#include "common/simd/mask_bits-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace vislab::HWY_NAMESPACE {
 namespace {
@@ -114,9 +116,7 @@ class Walk {
   }
 
   static HWY_ATTR std::uint32_t bits_of(hn::Mask<Floats> mask) {
-    std::array<std::uint8_t, 8> bytes{};
-    hn::StoreMaskBits(Floats(), mask, bytes.data());
-    return bytes[0];
+    return simd::HWY_NAMESPACE::mask_bits(Floats(), mask);
   }
 
   HWY_ATTR void test_children(const BoxBlock& block, std::uint32_t planes, BlockSides& sides) {

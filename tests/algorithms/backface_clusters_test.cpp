@@ -415,6 +415,34 @@ TEST(BackfaceClusters, KeepWhatTheEyeSeesEdgeOn) {
   }
 }
 
+TEST(BackfaceClusters, FindTheSameInWhateverUnitAMeshIsGiven) {
+  for (const char* spec : {"backface.cluster", "backface.cluster_tree",
+                           "backface.cluster_tree[mixed=test]", "backface.cone"}) {
+    const auto kept = [&](double unit) {
+      Mesh mesh = bumpy(16);
+      for (glm::vec3& position : mesh.positions) position *= static_cast<float>(unit);
+      Scene scene;
+      scene.meshes = {std::move(mesh)};
+      scene.objects = {{0, glm::dmat4x3(1.0 / unit), none_id}};
+      scene.finish();
+      CullerRun run(spec, scene);
+      std::vector<std::vector<TriangleRange>> all;
+      for (const double distance : {2.0, 7.0, 1e6}) {
+        Camera camera = camera_at(distance * glm::dvec3(0.6, 0.48, 0.64), {0.0, 0.0, 0.0});
+        all.push_back(run.emitted(camera));
+        camera.lens = orthographic_lens(5.0, 1.0, 0.1, 1e6);
+        all.push_back(run.emitted(camera));
+      }
+      return all;
+    };
+    const auto expected = kept(1.0);
+    EXPECT_GT(expected[0].size(), 1U) << spec;
+    for (const double unit : {0x1p-100, 0x1p-20, 0x1p30, 0x1p125}) {
+      EXPECT_TRUE(kept(unit) == expected) << spec << " in units of " << unit;
+    }
+  }
+}
+
 TEST(BackfaceClusters, FindNothingAboutTheOriginOfAMeshFarAway) {
   for (const char* name : {"backface.cluster", "backface.cluster_tree"}) {
     const auto recall = [&](const char* origin, double offset) {

@@ -61,9 +61,37 @@ inline Mesh triangle_soup(Random& random, std::uint32_t triangles) {
   return mesh;
 }
 
-/// Five objects about a point that is up to 1e6 m from the origin. With `solid` of solids, else
-/// also of triangle soup.
-inline Scene facing_world(Random& random, bool exact, bool solid) {
+/// What the meshes of a world are like.
+enum class MeshKind {
+  ordinary,  // about 1 m, at most 300 triangles
+  tiny,      // coordinates of 1e-44 to 1e-36 in their own frame, near the end of float
+  huge,      // of 1e30 to 1e37
+  fine       // two objects of thousands of triangles, so that clusters hold tens
+};
+
+/// A bumpy sphere of 12 n^2 triangles; with `solid` false it lacks one.
+inline Mesh fine_mesh(std::uint32_t n, Bumps bumps, bool solid) {
+  BumpySphereParameters parameters;
+  parameters.subdivisions = n;
+  parameters.bumps = bumps;
+  Mesh mesh = bumpy_sphere_mesh(parameters);
+  if (!solid) mesh.triangles.pop_back();
+  return mesh;
+}
+
+/// Takes coordinates to one of the ends of float, by a power of two. Returns that.
+inline double shrink_or_grow(Mesh& mesh, MeshKind kind, Random& random) {
+  const double exponent =
+      kind == MeshKind::tiny ? random.uniform(-146.0, -120.0) : random.uniform(100.0, 123.0);
+  const double scale = std::exp2(std::floor(exponent));
+  for (glm::vec3& position : mesh.positions) position = glm::vec3(glm::dvec3(position) * scale);
+  return scale;
+}
+
+/// Five objects (MeshKind::fine: two) about a point that is up to 1e6 m from the origin, of about
+/// 1 m. With `solid` of solids, else also of triangle soup.
+inline Scene facing_world(Random& random, bool exact, bool solid,
+                          MeshKind kind = MeshKind::ordinary) {
   Scene scene;
   BumpySphereParameters bumpy;
   bumpy.subdivisions = 5;
@@ -74,21 +102,40 @@ inline Scene facing_world(Random& random, bool exact, bool solid) {
   scene.meshes = {cube_mesh(), sphere_mesh(5), bumpy_sphere_mesh(bumpy)};
   if (exact) {
     for (Mesh& mesh : scene.meshes) mesh = snapped(std::move(mesh));
-  } else {
+  } else if (kind == MeshKind::ordinary) {
     scene.meshes.push_back(bumpy_sphere_mesh(far_bumpy));
   }
   if (!solid) scene.meshes = {triangle_soup(random, 150), sphere_mesh(4)};
+  if (kind == MeshKind::fine) {
+#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
+    constexpr std::uint32_t subdivisions = 14;
+#else
+    constexpr std::uint32_t subdivisions = 30;
+#endif
+    scene.meshes = {fine_mesh(subdivisions, Bumps::low, solid),
+                    fine_mesh(subdivisions, Bumps::high, solid)};
+  }
+  std::vector<double> scales(scene.meshes.size(), 1.0);
+  if (kind == MeshKind::tiny || kind == MeshKind::huge) {
+    for (std::size_t i = 0; i < scales.size(); ++i) {
+      scales[i] = shrink_or_grow(scene.meshes[i], kind, random);
+    }
+  }
   constexpr std::array<double, 3> reaches{10.0, 1e3, 1e6};
   glm::dvec3 middle = vector_in(random, reaches[random.below(reaches.size())]);
   if (exact) middle = glm::round(middle);
-  for (std::uint32_t i = 0; i < 5; ++i) {
-    const auto mesh = static_cast<MeshId>(random.below(scene.meshes.size()));
+  const std::uint32_t objects = kind == MeshKind::fine ? 2 : 5;
+  for (std::uint32_t i = 0; i < objects; ++i) {
+    const auto mesh = kind == MeshKind::fine
+                          ? static_cast<MeshId>(i)
+                          : static_cast<MeshId>(random.below(scene.meshes.size()));
     const bool plain = random.below(4) == 0;
     const glm::dmat3 linear = plain ? glm::dmat3(1.0) : linear_map(random, exact);
     glm::dvec3 at = middle + vector_in(random, 8.0);
     if (exact) at = glm::round(at);
     if (mesh == 3) at -= linear * far_bumpy.mesh_offset;
-    scene.objects.push_back({mesh, {linear[0], linear[1], linear[2], at}, none_id});
+    const glm::dmat3 placed = linear / scales[mesh];
+    scene.objects.push_back({mesh, {placed[0], placed[1], placed[2], at}, none_id});
   }
   scene.finish();
   return scene;
@@ -108,6 +155,9 @@ inline Camera facing_camera(Random& random, const Scene& scene) {
     const double whole = static_cast<double>(8 + random.below(120));
     return random.below(2) == 0 ? whole : -whole;
   };
+  // Of the mesh, as a power of two.
+  const glm::dvec3 half = mesh.bounds.half_size();
+  const double unit = std::exp2(std::round(std::log2(std::max({half.x, half.y, half.z}))));
   glm::dvec3 local = a;
   const std::uint64_t choice = random.below(8);
   switch (choice) {
@@ -126,18 +176,18 @@ inline Camera facing_camera(Random& random, const Scene& scene) {
       const double tilt = std::pow(10.0, random.uniform(-12.0, -1.0));
       local += u * far_out() + v * far_out();
       local += normal * (glm::length(local - a) * tilt * (random.below(2) == 0 ? 1.0 : -1.0) /
-                         std::max(glm::length(normal), 1e-30));
+                         std::max(glm::length(normal), 1e-30 * unit * unit));
       break;
     }
     case 6:  // far away
-      local += vector_in(random, 1.0) * std::pow(10.0, random.uniform(2.0, 8.0));
+      local += vector_in(random, unit) * std::pow(10.0, random.uniform(2.0, 8.0));
       break;
     default:
-      local += vector_in(random, 12.0);
+      local += vector_in(random, 12.0 * unit);
   }
   Camera camera;
   const glm::dvec3 eye = transform * glm::dvec4(local, 1.0);
-  const glm::dvec3 target = transform * glm::dvec4(a + vector_in(random, 0.5), 1.0);
+  const glm::dvec3 target = transform * glm::dvec4(a + vector_in(random, 0.5 * unit), 1.0);
   const glm::dvec3 up = random.below(2) == 0 ? glm::dvec3(0.0, 1.0, 0.0) : vector_in(random, 1.0);
   camera.pose = look_at(eye, target, up);
   camera.lens = perspective_lens(random.uniform(0.2, 2.5), 1.0, 1e-3, 1e9);
@@ -151,7 +201,7 @@ inline Camera facing_camera(Random& random, const Scene& scene) {
       // Along an axis of the object, in the planes of a cube's sides.
       const auto axis = static_cast<int>(random.below(3));
       const glm::dvec3 along = transform[axis];
-      camera.pose = look_at(eye, eye - along, up);
+      camera.pose = look_at(eye, eye - along * unit, up);
     }
   }
   return camera;
