@@ -1,7 +1,9 @@
 #include "experiments/calibration/cluster_test_cost.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 #include <vector>
 
@@ -20,15 +22,13 @@ constexpr std::uint32_t cluster_triangles = 16;
 constexpr std::size_t eyes = 64;
 
 ClusterBound bound_of_run(const Mesh& mesh, const MeshFrame& frame, std::uint32_t first) {
+  std::array<std::uint32_t, cluster_triangles> triangles{};
+  std::iota(triangles.begin(), triangles.end(), first);
   std::vector<glm::dvec4> planes;
-  Aabb box;
-  for (std::uint32_t triangle = first; triangle < first + cluster_triangles; ++triangle) {
+  for (const std::uint32_t triangle : triangles) {
     planes.push_back(unit_plane(mesh, frame, triangle));
-    for (int corner = 0; corner < 3; ++corner) {
-      box.extend(mesh.positions[mesh.triangles[triangle][corner]]);
-    }
   }
-  return bound_of(planes, box, frame, Origin::centre);
+  return bound_of(planes, box_of(mesh, frame, triangles), frame, Origin::centre);
 }
 
 /// Every `cluster_triangles` triangles that follow each other, as the kernel takes them.
