@@ -66,6 +66,9 @@ struct TreeAnswer {
 
   /// Makes room for the answers of a tree.
   void reserve(std::size_t nodes);
+  std::size_t bytes() const {
+    return (back.capacity() + mixed.capacity() + pending.capacity()) * sizeof(std::uint32_t);
+  }
 };
 
 /// Walks down from node 0, and no further where all triangles are seen from behind, or from the

@@ -63,7 +63,7 @@ CullerInfo describe() {
       "Keeps clusters that are partly seen from behind, unless mixed=test: on coarse meshes, with "
       "large clusters and next to the mesh that is much. Where triangles come in no order, marking "
       "them takes longer than testing every plane. Keeps meshes that are open or cross themselves, "
-      "and objects around the eye, whole.";
+      "and objects around the eye, whole. With costs=measured answers depend on the machine.";
   info.sources = {"Johannsen and Carter 1998, Clustered Backface Culling",
                   "Zachmann, Computer-Graphik 2, SS 2012, slides 20-29"};
   return info;
@@ -131,7 +131,9 @@ class ClusterTreeCuller : public FacingCuller {
   }
 
   std::size_t mesh_bytes() const override {
-    std::size_t bytes = meshes_.capacity() * sizeof(TestedMesh);
+    std::size_t bytes = meshes_.capacity() * sizeof(TestedMesh) + answer_.bytes() +
+                        mixed_clusters_.capacity() * sizeof(std::uint32_t) +
+                        bits_.capacity() * sizeof(std::uint64_t);
     for (const TestedMesh& mesh : meshes_) {
       bytes += mesh.tree ? mesh.tree->bytes() : 0;
       bytes += mesh.planes ? mesh.planes->bytes() : 0;

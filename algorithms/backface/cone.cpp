@@ -6,8 +6,8 @@
 //   it for the whole cluster, without a root.
 // Guarantee: conservative, as FacingCuller says: only what surely faces away goes. Triangles that
 //   have no area, or nearly, are never left out.
-// Cost: O(clusters of the objects offered) for the test; runs of triangles for the answer. 28 bytes
-//   a cluster (form=sphere: 32), and 4 a run of consecutive triangles.
+// Cost: O(clusters of the objects offered) for the test; runs of triangles for the answer. 32 bytes
+//   a cluster (form=sphere: 36), and 4 a run of consecutive triangles.
 // Limits: keeps clusters whose normals spread, those near the silhouette, and those that the eye is
 //   near to; with a sphere also those whose triangles lie far apart. On rough surfaces the
 //   triangles of a cluster are scattered over the mesh: writing their bits then takes far longer
@@ -47,7 +47,7 @@ CullerInfo describe() {
       ParameterSpec::integer(
           "size", 32, 1, 4096, "triangles", ParameterSpec::Stage::build,
           "triangles in a cluster; smaller ones find more back faces and take more tests. Small "
-          "meshes get smaller ones, so that there are some dozens"),
+          "meshes get smaller ones, so that there are at least 256 while that is possible"),
       open_parameter()};
   info.cost =
       "O(clusters of the offered objects): nine multiplications each; and the runs of triangles "

@@ -53,8 +53,8 @@ CullerInfo describe() {
       ParameterSpec::integer(
           "size", 32, 1, 4096, "triangles", ParameterSpec::Stage::build,
           "triangles in a cluster, a leaf of the hierarchy; smaller ones find more back faces and "
-          "take more tests and memory. Small meshes get smaller ones, so that there are some "
-          "dozens"),
+          "take more tests and memory. Small meshes get smaller ones, so that there are at "
+          "least 256 while that is possible"),
       open_parameter()};
   info.cost =
       "O(nodes whose verdicts run out + runs of triangles that change) an object; without "

@@ -12,8 +12,8 @@
 #include <array>
 #include <optional>
 
+#include "algorithms/backface/cluster_culler.h"
 #include "algorithms/backface/facing_culler.h"
-#include "algorithms/backface/flat_clusters.h"
 #include "algorithms/backface/normal_mask.h"
 #include "algorithms/backface/plane_culler.h"
 #include "common/culler/registry.h"
@@ -138,49 +138,13 @@ class FloatSign : public FacingCuller {
 };
 
 /// backface.cluster, with the rule for joining clusters as it is printed.
-class PrintedCostSign : public FacingCuller {
- public:
-  PrintedCostSign(CullerInfo info, const ParameterValues& values)
-      : FacingCuller(std::move(info), culls_open(values)), test_cost_(values.real("test_cost")) {}
-  Counters counters() const override { return {{"cluster_tests", cluster_tests_}}; }
-
- protected:
-  void clear() override { meshes_.clear(); }
-  void add_mesh(MeshId id, const Mesh& mesh, const MeshFrame& frame, const BuildContext&) override {
-    ClusterSettings settings;
-    settings.test_cost = test_cost_;
-    settings.join = JoinRule::printed;
-    meshes_.resize(id + 1);
-    meshes_[id].emplace(mesh, frame, settings);
-    back_.resize(std::max(back_.size(), words_of(meshes_[id]->cluster_count())));
-    bits_.resize(std::max(bits_.size(), words_of(mesh.triangles.size())));
-  }
-  std::span<const std::uint64_t> mark_mesh(const ObjectView& view) override {
-    const FlatClusters& clusters = *meshes_[view.mesh];
-    cluster_tests_ += clusters.cluster_count();
-    const auto back = std::span(back_).first(words_of(clusters.cluster_count()));
-    find_back(clusters.blocks(), cluster_eye(view.eye, frame_of(view.mesh), clusters.reach()),
-              back);
-    const auto bits = std::span(bits_).first(words_of(clusters.triangle_count()));
-    std::ranges::fill(bits, 0);
-    clusters.mark(back, bits.data());
-    return bits;
-  }
-  std::size_t mesh_bytes() const override {
-    std::size_t sum = 0;
-    for (const std::optional<FlatClusters>& clusters : meshes_) {
-      sum += clusters ? clusters->bytes() : 0;
-    }
-    return sum;
-  }
-
- private:
-  double test_cost_;
-  std::vector<std::optional<FlatClusters>> meshes_;  // by id; none where nothing is tested
-  std::vector<std::uint64_t> back_;                  // by cluster of one mesh
-  std::vector<std::uint64_t> bits_;                  // by triangle of one mesh
-  std::uint64_t cluster_tests_ = 0;
-};
+std::unique_ptr<ICuller> printed_cost_sign(CullerInfo info, const ParameterValues& values) {
+  ClusterSettings settings;
+  settings.test_cost = values.real("test_cost");
+  settings.join = JoinRule::printed;
+  return make_cluster_culler(std::move(info), culls_open(values),
+                             [settings](const BuildContext&) { return settings; });
+}
 
 std::unique_ptr<ICuller> class_centre(CullerInfo info, const ParameterValues& values) {
   NormalMaskOptions options;
@@ -232,7 +196,7 @@ constexpr std::array mistakes{
             "T(C) < T(A) + T(B) gives - t_C / r: the dearer a test, the sooner clusters should be "
             "joined, not the later",
             "leaves out nothing that is seen, but the dearer tests are the more of them it makes",
-            "Zachmann slide 29", make<PrintedCostSign>},
+            "Zachmann slide 29", printed_cost_sign},
 };
 
 CullerInfo describe() {
