@@ -16,6 +16,7 @@
 #include "algorithms/backface/facing_culler.h"
 #include "algorithms/backface/normal_mask.h"
 #include "algorithms/backface/plane_culler.h"
+#include "common/culler/mistakes.h"
 #include "common/culler/registry.h"
 
 namespace vislab {
@@ -25,12 +26,7 @@ using namespace backface_culling;
 
 using Make = std::unique_ptr<ICuller> (*)(CullerInfo info, const ParameterValues& values);
 
-struct Mistake {
-  const char* name;
-  const char* says;    // what the source says or does
-  const char* wrong;   // what is wrong with it
-  const char* damage;  // what it does
-  const char* source;
+struct FacingMistake : Mistake {
   Make make;
 };
 
@@ -160,25 +156,27 @@ std::unique_ptr<ICuller> make(CullerInfo info, const ParameterValues& values) {
 }
 
 constexpr std::array mistakes{
-    Mistake{"view_direction",
-            "The sign of the normal times the view direction tells whether a polygon faces the "
-            "camera",
-            "in perspective the direction to a polygon differs from the view's by up to half the "
-            "field of view and more",
-            "leaves out front faces at the sides of the image, and keeps as many back faces",
-            "Kowalka 2016, 2.2.2, against Zachmann slide 8", view_direction},
-    Mistake{"winding_ignored", "The normal is the cross product of the transformed vertices' edges",
-            "a transform that mirrors turns the order of the vertices round",
-            "leaves out the front of every mirrored object and keeps its back",
-            "filament issue 1520; bevy pull request 8859; flutter_scene pull request 137",
-            winding_ignored},
-    Mistake{"normals_as_vectors", "Normals are taken to the world by the object's matrix",
-            "normals go by the inverse transpose, which is another matrix where the object is "
-            "sheared or scaled by different amounts",
-            "leaves out front faces of sheared and flattened objects",
-            "failures of engines with sheared transforms: filament issue 1520",
-            make<NormalsAsVectors>},
-    Mistake{
+    FacingMistake{
+        "view_direction",
+        "The sign of the normal times the view direction tells whether a polygon faces the "
+        "camera",
+        "in perspective the direction to a polygon differs from the view's by up to half the "
+        "field of view and more",
+        "leaves out front faces at the sides of the image, and keeps as many back faces",
+        "Kowalka 2016, 2.2.2, against Zachmann slide 8", view_direction},
+    FacingMistake{"winding_ignored",
+                  "The normal is the cross product of the transformed vertices' edges",
+                  "a transform that mirrors turns the order of the vertices round",
+                  "leaves out the front of every mirrored object and keeps its back",
+                  "filament issue 1520; bevy pull request 8859; flutter_scene pull request 137",
+                  winding_ignored},
+    FacingMistake{
+        "normals_as_vectors", "Normals are taken to the world by the object's matrix",
+        "normals go by the inverse transpose, which is another matrix where the object is "
+        "sheared or scaled by different amounts",
+        "leaves out front faces of sheared and flattened objects",
+        "failures of engines with sheared transforms: filament issue 1520", make<NormalsAsVectors>},
+    FacingMistake{
         "float_sign",
         "Put into the plane's equation, p.n - a.n = e, the eye is in front of a face if e >= 0, "
         "else the face is a back face",
@@ -187,16 +185,18 @@ constexpr std::array mistakes{
         "leaves out front faces that are nearly edge-on, more of them the farther the scene is "
         "from the world's origin",
         "textbook 17.1, computed in float without a bound on its error", make<FloatSign>},
-    Mistake{"class_centre", "A class of normals faces away if the normal in its middle does",
-            "the class holds other normals, which may still face the eye",
-            "leaves out front faces that are nearly edge-on, more of them the coarser the classes",
-            "against Zachmann slides 15-16, which test all four corners of a class", class_centre},
-    Mistake{"printed_cost_sign",
-            "Two clusters are joined if P(C) > (P(A) n_A + P(B) n_B + t_C / r) / (n_A + n_B)",
-            "T(C) < T(A) + T(B) gives - t_C / r: the dearer a test, the sooner clusters should be "
-            "joined, not the later",
-            "leaves out nothing that is seen, but the dearer tests are the more of them it makes",
-            "Zachmann slide 29", printed_cost_sign},
+    FacingMistake{
+        "class_centre", "A class of normals faces away if the normal in its middle does",
+        "the class holds other normals, which may still face the eye",
+        "leaves out front faces that are nearly edge-on, more of them the coarser the classes",
+        "against Zachmann slides 15-16, which test all four corners of a class", class_centre},
+    FacingMistake{
+        "printed_cost_sign",
+        "Two clusters are joined if P(C) > (P(A) n_A + P(B) n_B + t_C / r) / (n_A + n_B)",
+        "T(C) < T(A) + T(B) gives - t_C / r: the dearer a test, the sooner clusters should be "
+        "joined, not the later",
+        "leaves out nothing that is seen, but the dearer tests are the more of them it makes",
+        "Zachmann slide 29", printed_cost_sign},
 };
 
 CullerInfo describe() {
@@ -212,14 +212,8 @@ CullerInfo describe() {
   info.culls = Culls::back_faces;
   info.space = Space::object;
   info.stage = PipelineStage::geometry;
-  std::vector<std::string> names;
-  std::string meaning = "the mistake:";
-  for (const Mistake& mistake : mistakes) {
-    names.emplace_back(mistake.name);
-    meaning += std::string(names.size() > 1 ? "; " : " ") + mistake.name + " " + mistake.damage;
-  }
   info.parameters = {
-      ParameterSpec::choice("error", names.front(), names, ParameterSpec::Stage::build, meaning),
+      error_parameter(mistakes),
       ParameterSpec::real("test_cost", 1.0, 0.0, 1000.0, "triangles", ParameterSpec::Stage::build,
                           "printed_cost_sign: t_C / r, the time to test a cluster in that of "
                           "drawing a triangle; the others do without"),
@@ -237,26 +231,14 @@ CullerInfo describe() {
   return info;
 }
 
-CullerInfo describe(const Mistake& mistake) {
-  CullerInfo info = describe();
-  info.summary = std::string(mistake.says) + ". Wrong: " + mistake.wrong + ".";
-  info.limits = std::string("Wrong on purpose: ") + mistake.damage + ".";
-  info.sources = {mistake.source};
-  return info;
-}
-
 }  // namespace
 
 namespace cullers {
 
 CullerEntry backface_wrong() {
-  return {describe(), [](const ParameterValues& values) -> std::unique_ptr<ICuller> {
-            for (const Mistake& mistake : mistakes) {
-              if (values.choice("error") == mistake.name) {
-                return mistake.make(describe(mistake), values);
-              }
-            }
-            throw std::logic_error("an allowed mistake is not in the table");
+  return {describe(), [](const ParameterValues& values) {
+            const FacingMistake& mistake = chosen_mistake(mistakes, values);
+            return mistake.make(info_of(describe(), mistake), values);
           }};
 }
 

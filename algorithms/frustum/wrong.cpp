@@ -12,6 +12,7 @@
 #include <array>
 
 #include "algorithms/frustum/wrong_rules.h"
+#include "common/culler/mistakes.h"
 #include "common/culler/registry.h"
 
 namespace vislab {
@@ -19,12 +20,7 @@ namespace {
 
 using namespace frustum_culling;
 
-struct Mistake {
-  const char* name;
-  const char* says;    // what the source says or does
-  const char* wrong;   // what is wrong with it
-  const char* damage;  // what it does
-  const char* source;
+struct FrustumMistake : Mistake {
   Repeatability repeatability;
   MakeWrongRule make;
 };
@@ -33,78 +29,89 @@ constexpr auto stateless = Repeatability::stateless;
 constexpr auto path = Repeatability::path;
 
 constexpr std::array mistakes{
-    Mistake{"all_corners_inside", "A box is inside only if all eight corners are",
-            "a box that straddles a plane has corners outside",
-            "leaves out everything that the border of the image cuts",
-            "Kowalka 2016, 4.3.2, first attempt", stateless, all_corners_inside},
-    Mistake{"any_corner_inside", "A box is inside if at least one corner is",
-            "a box around or through the frustum has no corner in it",
-            "leaves out what is larger than the frustum or pierces it",
-            "Zachmann slide 36; Kowalka 2016, 4.3.2, fig. 4.3", stateless, any_corner_inside},
-    Mistake{"outward_vertex", "A box is outside if its n-vertex is behind a plane",
-            "that is written for normals that point outward, and used with inward ones: the wrong "
-            "corner is asked",
-            "leaves out everything that the border of the image cuts",
-            "Zachmann slides 35-38 against Kowalka 2016, 3.2", stateless, outward_vertex},
-    Mistake{"behind_all_planes", "What is behind all planes is invisible",
-            "behind any one of them is enough, and nothing is behind two that face each other",
-            "leaves out nothing at all", "Engine report 2.2.3", stateless, behind_all_planes},
-    Mistake{"degrees", "The half width is the distance times tan(angle / 2)",
-            "the tangent takes radians and is given degrees",
-            "a frustum of 58.3 degrees instead of 45 and of 162 instead of 60, but of 1 degree "
-            "instead of 44: keeps too much, or leaves out nearly everything",
-            "Kowalka 2016, fig. 3.4", stateless, tangent_of_degrees},
-    Mistake{"direction", "The plane's centre is eye + (ref - eye) * distance",
-            "ref - eye is not a unit vector; here it is 5 m long",
-            "near and far plane five times too far away: leaves out what is near and at the sides",
-            "Kowalka 2016, eq. 4.1", stateless, direction_not_normalised},
-    Mistake{
+    FrustumMistake{"all_corners_inside", "A box is inside only if all eight corners are",
+                   "a box that straddles a plane has corners outside",
+                   "leaves out everything that the border of the image cuts",
+                   "Kowalka 2016, 4.3.2, first attempt", stateless, all_corners_inside},
+    FrustumMistake{"any_corner_inside", "A box is inside if at least one corner is",
+                   "a box around or through the frustum has no corner in it",
+                   "leaves out what is larger than the frustum or pierces it",
+                   "Zachmann slide 36; Kowalka 2016, 4.3.2, fig. 4.3", stateless,
+                   any_corner_inside},
+    FrustumMistake{
+        "outward_vertex", "A box is outside if its n-vertex is behind a plane",
+        "that is written for normals that point outward, and used with inward ones: the wrong "
+        "corner is asked",
+        "leaves out everything that the border of the image cuts",
+        "Zachmann slides 35-38 against Kowalka 2016, 3.2", stateless, outward_vertex},
+    FrustumMistake{
+        "behind_all_planes", "What is behind all planes is invisible",
+        "behind any one of them is enough, and nothing is behind two that face each other",
+        "leaves out nothing at all", "Engine report 2.2.3", stateless, behind_all_planes},
+    FrustumMistake{
+        "degrees", "The half width is the distance times tan(angle / 2)",
+        "the tangent takes radians and is given degrees",
+        "a frustum of 58.3 degrees instead of 45 and of 162 instead of 60, but of 1 degree "
+        "instead of 44: keeps too much, or leaves out nearly everything",
+        "Kowalka 2016, fig. 3.4", stateless, tangent_of_degrees},
+    FrustumMistake{
+        "direction", "The plane's centre is eye + (ref - eye) * distance",
+        "ref - eye is not a unit vector; here it is 5 m long",
+        "near and far plane five times too far away: leaves out what is near and at the sides",
+        "Kowalka 2016, eq. 4.1", stateless, direction_not_normalised},
+    FrustumMistake{
         "thesis_up", "right = up x (eye - ref), and corners lie along up as given",
         "up is not perpendicular to the view, and right is then too short",
         "the more the camera is pitched the more the frustum is skewed and narrowed: leaves out "
         "what is at the borders and keeps what is not seen",
         "Kowalka 2016, eqs. 4.3-4.4", stateless, up_as_given},
-    Mistake{"symmetric_lens", "One half angle stands for both sides of the window",
-            "off-centre lenses (headsets, tiled displays) have two",
-            "leaves out what is at the wider side and keeps as much beyond the other",
-            "niagara issue 5; fs2open issue 6673", stateless, symmetric_lens},
-    Mistake{"one_eye", "Both images of a stereo pair are culled with the left eye's frustum",
-            "the right eye, whose image this is, sees past it by the distance of the eyes (amount)",
-            "leaves out what only the right eye sees, at the right border",
-            "playcanvas pull request 8889; three.js issue 13236", stateless, one_eye},
-    Mistake{"float_planes", "Planes and distances are float, in the coordinates of the world",
-            "far from the origin the rounding of a plane's d is larger than the objects",
-            "an error of about a metre at 1e7 m: leaves out what is smaller at the borders, from "
-            "one frame to the next",
-            "o3de issue 11856; castle-engine issue 503; filament pull request 913", stateless,
-            float_planes},
-    Mistake{"nan_outside", "An oriented box is kept if its distance plus its reach is at least 0",
-            "normalised axes of a flat box are 0 / 0, and every comparison with NaN is false",
-            "leaves out all flat boxes", "FUSEE issues 652 and 658", stateless, nan_outside},
-    Mistake{"half_turn",
-            "A box behind a side plane stays out while the camera turns away by less than 180 "
-            "degrees",
-            "that holds only below 180 degrees less the field of view; then it comes in at the "
-            "other side",
-            "leaves out what comes into view from behind during a long turn", "Kowalka 2016, 3.2.2",
-            path, half_turn},
-    Mistake{"fixed_root", "A tree is skipped if its root is outside",
-            "objects that left the root's box are still in the tree",
-            "leaves out objects that moved out of the scene's first bounds when only those are "
-            "looked away from",
-            "o3de pull request 20115", stateless, fixed_root},
-    Mistake{"stale_bounds", "Boxes are made once, when the scene is built", "objects move",
-            "leaves out what moved into view and keeps what moved out of it",
-            "three.js issues 18412 and 27733; Godot issue 28933", stateless, stale_bounds},
-    Mistake{"small_parents", "A node outside or inside decides for all that is below it",
-            "its box does not hold its children: it is too small by a share of its size (amount)",
-            "leaves out children that stick out of nodes at the border of the image",
-            "GearVRf issue 787 and pull request 380; OpenSceneGraph pull request 393", stateless,
-            small_parents},
-    Mistake{"drops_on_remove", "The last object of a list takes the place of a removed one",
-            "it is not told its new place, so that its own removal takes out another",
-            "each pair of removals can lose an object for good", "UnityOctree issues 8 and 29",
-            path, drops_on_remove},
+    FrustumMistake{"symmetric_lens", "One half angle stands for both sides of the window",
+                   "off-centre lenses (headsets, tiled displays) have two",
+                   "leaves out what is at the wider side and keeps as much beyond the other",
+                   "niagara issue 5; fs2open issue 6673", stateless, symmetric_lens},
+    FrustumMistake{
+        "one_eye", "Both images of a stereo pair are culled with the left eye's frustum",
+        "the right eye, whose image this is, sees past it by the distance of the eyes (amount)",
+        "leaves out what only the right eye sees, at the right border",
+        "playcanvas pull request 8889; three.js issue 13236", stateless, one_eye},
+    FrustumMistake{
+        "float_planes", "Planes and distances are float, in the coordinates of the world",
+        "far from the origin the rounding of a plane's d is larger than the objects",
+        "an error of about a metre at 1e7 m: leaves out what is smaller at the borders, from "
+        "one frame to the next",
+        "o3de issue 11856; castle-engine issue 503; filament pull request 913", stateless,
+        float_planes},
+    FrustumMistake{
+        "nan_outside", "An oriented box is kept if its distance plus its reach is at least 0",
+        "normalised axes of a flat box are 0 / 0, and every comparison with NaN is false",
+        "leaves out all flat boxes", "FUSEE issues 652 and 658", stateless, nan_outside},
+    FrustumMistake{
+        "half_turn",
+        "A box behind a side plane stays out while the camera turns away by less than 180 "
+        "degrees",
+        "that holds only below 180 degrees less the field of view; then it comes in at the "
+        "other side",
+        "leaves out what comes into view from behind during a long turn", "Kowalka 2016, 3.2.2",
+        path, half_turn},
+    FrustumMistake{
+        "fixed_root", "A tree is skipped if its root is outside",
+        "objects that left the root's box are still in the tree",
+        "leaves out objects that moved out of the scene's first bounds when only those are "
+        "looked away from",
+        "o3de pull request 20115", stateless, fixed_root},
+    FrustumMistake{"stale_bounds", "Boxes are made once, when the scene is built", "objects move",
+                   "leaves out what moved into view and keeps what moved out of it",
+                   "three.js issues 18412 and 27733; Godot issue 28933", stateless, stale_bounds},
+    FrustumMistake{
+        "small_parents", "A node outside or inside decides for all that is below it",
+        "its box does not hold its children: it is too small by a share of its size (amount)",
+        "leaves out children that stick out of nodes at the border of the image",
+        "GearVRf issue 787 and pull request 380; OpenSceneGraph pull request 393", stateless,
+        small_parents},
+    FrustumMistake{"drops_on_remove", "The last object of a list takes the place of a removed one",
+                   "it is not told its new place, so that its own removal takes out another",
+                   "each pair of removals can lose an object for good",
+                   "UnityOctree issues 8 and 29", path, drops_on_remove},
 };
 
 CullerInfo describe() {
@@ -120,14 +127,8 @@ CullerInfo describe() {
   info.culls = Culls::outside_frustum;
   info.space = Space::object;
   info.stage = PipelineStage::application;
-  std::vector<std::string> names;
-  std::string meaning = "the mistake:";
-  for (const Mistake& mistake : mistakes) {
-    names.emplace_back(mistake.name);
-    meaning += std::string(names.size() > 1 ? "; " : " ") + mistake.name + " " + mistake.damage;
-  }
   info.parameters = {
-      ParameterSpec::choice("error", names.front(), names, ParameterSpec::Stage::build, meaning),
+      error_parameter(mistakes),
       ParameterSpec::real("amount", 0.5, 0.0, 10.0, "", ParameterSpec::Stage::build,
                           "one_eye: distance of the eyes in metres; small_parents: by what share "
                           "of their size parents are too small; the others do without")};
@@ -138,18 +139,15 @@ CullerInfo describe() {
   return info;
 }
 
-CullerInfo describe(const Mistake& mistake) {
-  CullerInfo info = describe();
-  info.summary = std::string(mistake.says) + ". Wrong: " + mistake.wrong + ".";
+CullerInfo describe(const FrustumMistake& mistake) {
+  CullerInfo info = info_of(describe(), mistake);
   info.repeatability = mistake.repeatability;
-  info.limits = std::string("Wrong on purpose: ") + mistake.damage + ".";
-  info.sources = {mistake.source};
   return info;
 }
 
 class Wrong : public ICuller {
  public:
-  Wrong(const Mistake& mistake, double amount)
+  Wrong(const FrustumMistake& mistake, double amount)
       : info_(describe(mistake)), rule_(mistake.make(amount)) {}
 
   const CullerInfo& info() const override { return info_; }
@@ -189,13 +187,8 @@ class Wrong : public ICuller {
 namespace cullers {
 
 CullerEntry frustum_wrong() {
-  return {describe(), [](const ParameterValues& values) -> std::unique_ptr<ICuller> {
-            for (const Mistake& mistake : mistakes) {
-              if (values.choice("error") == mistake.name) {
-                return std::make_unique<Wrong>(mistake, values.real("amount"));
-              }
-            }
-            throw std::logic_error("an allowed mistake is not in the table");
+  return {describe(), [](const ParameterValues& values) {
+            return std::make_unique<Wrong>(chosen_mistake(mistakes, values), values.real("amount"));
           }};
 }
 
