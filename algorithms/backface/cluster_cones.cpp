@@ -15,7 +15,7 @@ constexpr double float_epsilon = std::numeric_limits<float>::epsilon();
 
 /// Rounded to float and back, in terms of `unit`.
 glm::dvec3 rounded(const glm::dvec3& point, double unit) {
-  return glm::dvec3(glm::vec3(point / unit)) * unit;
+  return rounded_to_float(point / unit) * unit;
 }
 
 /// The square of what axis . w has to reach in terms of |w|, rounded up.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/geometry/rounding.h"
+
 namespace vislab::backface_culling {
 namespace {
 
@@ -167,7 +169,7 @@ glm::dvec3 merged_axis(const NormalCone& a, const NormalCone& b) {
   if (!(length > 1e-12)) return a.axis;
   const double turn = 0.5 * (between + angle_b - angle_a);
   // Rounded, so that it does not depend on the last digit of a machine's sines.
-  return glm::dvec3(glm::vec3(std::cos(turn) * a.axis + std::sin(turn) * (sideways / length)));
+  return rounded_to_float(std::cos(turn) * a.axis + std::sin(turn) * (sideways / length));
 }
 
 glm::dvec3 apex_behind(std::span<const glm::dvec4> planes, const glm::dvec3& axis, double reach,
