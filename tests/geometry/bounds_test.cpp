@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/geometry/random.h"
+#include "common/geometry/rounding.h"
 
 namespace vislab {
 namespace {
@@ -143,6 +144,21 @@ TEST(Plane, ThroughThreePointsIsInsideWhereTheyAppearCounterClockwise) {
   const Plane plane = plane_through({0.0, 0.0, 2.0}, {1.0, 0.0, 2.0}, {0.0, 1.0, 2.0});
   EXPECT_DOUBLE_EQ(plane.signed_distance({5.0, 7.0, 3.0}), 1.0);
   EXPECT_DOUBLE_EQ(plane.signed_distance({0.0, 0.0, 0.0}), -2.0);
+}
+
+TEST(Rounding, ToTheNearestFloatLeavesNoMoreDigitsThanAFloatHas) {
+  Random random(7);
+  for (int i = 0; i < 1000; ++i) {
+    const glm::dvec3 v(random.uniform(-9.0, 9.0), random.uniform(-9.0, 9.0),
+                       random.uniform(-9.0, 9.0));
+    const glm::dvec3 rounded = rounded_to_float(v);
+    for (int axis = 0; axis < 3; ++axis) {
+      int exponent = 0;
+      const double digits = std::ldexp(std::frexp(rounded[axis], &exponent), 24);
+      EXPECT_EQ(digits, std::floor(digits));
+      EXPECT_LE(std::abs(rounded[axis] - v[axis]), std::ldexp(1.0, exponent - 25));
+    }
+  }
 }
 
 }  // namespace
