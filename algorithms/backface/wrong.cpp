@@ -74,15 +74,24 @@ std::unique_ptr<ICuller> winding_ignored(CullerInfo info, const ParameterValues&
       });
 }
 
-/// Normals taken to the world by the object's matrix itself.
-class NormalsAsVectors : public FacingCuller {
+/// Works from the mesh as it is: keeps nothing of it.
+class WithoutMemory : public FacingCuller {
  public:
-  NormalsAsVectors(CullerInfo info, const ParameterValues& values)
+  WithoutMemory(CullerInfo info, const ParameterValues& values)
       : FacingCuller(std::move(info), culls_open(values)) {}
 
  protected:
   void clear() override {}
   void add_mesh(MeshId, const Mesh&, const MeshFrame&, const BuildContext&) override {}
+  std::size_t mesh_bytes() const override { return 0; }
+};
+
+/// Normals taken to the world by the object's matrix itself.
+class NormalsAsVectors : public WithoutMemory {
+ public:
+  using WithoutMemory::WithoutMemory;
+
+ protected:
   void mark_range(const ObjectView& view, std::uint32_t first, std::uint32_t count,
                   std::uint64_t* back) override {
     const Mesh& mesh = scene().meshes[view.mesh];
@@ -98,18 +107,14 @@ class NormalsAsVectors : public FacingCuller {
       back[i / 64] |= std::uint64_t{behind} << (i % 64);
     }
   }
-  std::size_t mesh_bytes() const override { return 0; }
 };
 
 /// The plane's equation in the world, summed up in float; what comes out below 0 is culled.
-class FloatSign : public FacingCuller {
+class FloatSign : public WithoutMemory {
  public:
-  FloatSign(CullerInfo info, const ParameterValues& values)
-      : FacingCuller(std::move(info), culls_open(values)) {}
+  using WithoutMemory::WithoutMemory;
 
  protected:
-  void clear() override {}
-  void add_mesh(MeshId, const Mesh&, const MeshFrame&, const BuildContext&) override {}
   void mark_range(const ObjectView& view, std::uint32_t first, std::uint32_t count,
                   std::uint64_t* back) override {
     const Mesh& mesh = scene().meshes[view.mesh];
@@ -130,7 +135,6 @@ class FloatSign : public FacingCuller {
       back[i / 64] |= std::uint64_t{e < 0.0F} << (i % 64);
     }
   }
-  std::size_t mesh_bytes() const override { return 0; }
 };
 
 /// backface.cluster, with the rule for joining clusters as it is printed.
