@@ -1,0 +1,187 @@
+#include "common/raster/triangle_setup.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vislab {
+namespace {
+
+constexpr int subpixels = 256;
+constexpr double greatest_position = 32'768.0;  // pixels
+// A determinant below this part of its terms is rounding: the triangle is seen edge-on.
+constexpr double least_determinant = 1e-10;
+// Of the terms of a plane's equation: what rounding to float, sums of three and a determinant
+// that is just not edge-on can do, and some more.
+constexpr double plane_error = 1.0 / 524'288.0;
+
+struct Homogeneous {
+  double x, y, w, depth;
+};
+
+/// What is left of a triangle after clipping.
+struct Polygon {
+  std::array<Homogeneous, 8> corners;
+  int count = 0;
+};
+
+/// Keeps the part where distance(corner) >= 0. New corners are computed from the inner to the outer
+/// one, so that two triangles with a common edge get the same.
+template <typename Distance>
+void clip(Polygon& polygon, Distance&& distance) {
+  Polygon kept;
+  for (int i = 0; i < polygon.count; ++i) {
+    const Homogeneous& p = polygon.corners[static_cast<std::size_t>(i)];
+    const Homogeneous& q = polygon.corners[static_cast<std::size_t>((i + 1) % polygon.count)];
+    const double dp = distance(p);
+    const double dq = distance(q);
+    const auto between = [](const Homogeneous& in, double d_in, const Homogeneous& out,
+                            double d_out) {
+      const double t = d_in / (d_in - d_out);
+      return Homogeneous{in.x + t * (out.x - in.x), in.y + t * (out.y - in.y),
+                         in.w + t * (out.w - in.w), in.depth + t * (out.depth - in.depth)};
+    };
+    const auto add = [&](const Homogeneous& corner) {
+      kept.corners[static_cast<std::size_t>(kept.count++)] = corner;
+    };
+    if (dp >= 0.0) add(p);
+    if (dp >= 0.0 && dq < 0.0) add(between(p, dp, q, dq));
+    if (dp < 0.0 && dq >= 0.0) add(between(q, dq, p, dp));
+  }
+  polygon = kept;
+}
+
+/// Nearness as a function of the window position: a x + b y + c.
+struct NearnessPlane {
+  double a, b, c;
+};
+
+struct Snapped {
+  std::int32_t x, y;
+};
+
+Snapped snapped(const Homogeneous& corner) {
+  return {static_cast<std::int32_t>(std::floor(corner.x / corner.w * subpixels + 0.5)),
+          static_cast<std::int32_t>(std::floor(corner.y / corner.w * subpixels + 0.5))};
+}
+
+/// Of the pixels whose centres lie in [low, high] (grid units): the first, and one after the last.
+std::int32_t first_centre(std::int32_t low) { return (low - subpixels / 2 + subpixels - 1) >> 8; }
+std::int32_t after_last_centre(std::int32_t high) { return ((high - subpixels / 2) >> 8) + 1; }
+
+WindowEdge edge(const Snapped& p, const Snapped& q, Coverage coverage) {
+  const std::int64_t a = std::int64_t{p.y} - q.y;
+  const std::int64_t b = std::int64_t{q.x} - p.x;
+  // Left edges run down, top edges run left: the inside is to the left of an edge.
+  const bool owns_border = a > 0 || (a == 0 && b < 0);
+  std::int64_t value = a * (subpixels / 2 - std::int64_t{p.x}) +
+                       b * (subpixels / 2 - std::int64_t{p.y}) - (owns_border ? 0 : 1);
+  if (coverage == Coverage::whole_pixels) {
+    value -= (std::abs(a) + std::abs(b)) * (subpixels / 2 + 1);
+  }
+  return {value >> 8, static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)};
+}
+
+}  // namespace
+
+SetupResult set_up_triangle(const WindowTransform& window,
+                            const std::array<WindowPoint, 3>& vertices, std::uint32_t id,
+                            const SetupOptions& options,
+                            std::array<SetupTriangle, max_setup_pieces>& out) {
+  SetupResult result;
+  const bool perspective = window.perspective();
+  const Viewport& viewport = window.viewport();
+  std::array<Homogeneous, 3> v;
+  for (std::size_t i = 0; i < 3; ++i) {
+    v[i] = {vertices[i].x, vertices[i].y, perspective ? vertices[i].depth : 1.0, vertices[i].depth};
+  }
+  // Signed area times the w of all: cofactors of the matrix of the corners.
+  const std::array<double, 3> minors{v[1].y * v[2].w - v[1].w * v[2].y,
+                                     v[2].y * v[0].w - v[2].w * v[0].y,
+                                     v[0].y * v[1].w - v[0].w * v[1].y};
+  const double determinant = v[0].x * minors[0] + v[1].x * minors[1] + v[2].x * minors[2];
+  const double terms = std::abs(v[0].x) * (std::abs(v[1].y * v[2].w) + std::abs(v[1].w * v[2].y)) +
+                       std::abs(v[1].x) * (std::abs(v[2].y * v[0].w) + std::abs(v[2].w * v[0].y)) +
+                       std::abs(v[2].x) * (std::abs(v[0].y * v[1].w) + std::abs(v[0].w * v[1].y));
+  // Also not if anything is NaN or infinite.
+  if (!(std::abs(determinant) > least_determinant * terms) || !(terms < 1e300)) return result;
+  result.facing = determinant > 0.0 ? Facing::front : Facing::back;
+
+  Polygon polygon;
+  for (std::size_t i = 0; i < 3; ++i) polygon.corners[i] = v[i];
+  polygon.count = 3;
+  const double near_m = window.camera().lens.near_m;
+  const auto beyond = [&](auto&& distance) {
+    return std::ranges::any_of(v, [&](const Homogeneous& p) { return distance(p) < 0.0; });
+  };
+  const auto before_near = [&](const Homogeneous& p) { return p.depth - near_m; };
+  if (beyond(before_near)) clip(polygon, before_near);
+  const auto left = [](const Homogeneous& p) { return p.x + greatest_position * p.w; };
+  const auto right = [](const Homogeneous& p) { return greatest_position * p.w - p.x; };
+  const auto below = [](const Homogeneous& p) { return p.y + greatest_position * p.w; };
+  const auto above = [](const Homogeneous& p) { return greatest_position * p.w - p.y; };
+  if (beyond(left)) clip(polygon, left);
+  if (beyond(right)) clip(polygon, right);
+  if (beyond(below)) clip(polygon, below);
+  if (beyond(above)) clip(polygon, above);
+  if (polygon.count < 3) return result;
+
+  // a x + b y + c w takes each corner to its nearness times w.
+  std::array<double, 3> values;
+  for (std::size_t i = 0; i < 3; ++i) values[i] = perspective ? 1.0 : -v[i].depth;
+  NearnessPlane plane{0.0, 0.0, 0.0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Homogeneous& q = v[(i + 1) % 3];
+    const Homogeneous& r = v[(i + 2) % 3];
+    plane.a += values[i] * minors[i];
+    plane.b += values[i] * (q.w * r.x - q.x * r.w);
+    plane.c += values[i] * (q.x * r.y - q.y * r.x);
+  }
+  plane.a /= determinant;
+  plane.b /= determinant;
+  plane.c /= determinant;
+
+  std::array<Snapped, 8> corners;
+  for (int i = 0; i < polygon.count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    corners[at] = snapped(polygon.corners[at]);
+  }
+  for (int i = 1; i + 1 < polygon.count; ++i) {
+    Snapped p = corners[0];
+    Snapped q = corners[static_cast<std::size_t>(i)];
+    Snapped r = corners[static_cast<std::size_t>(i + 1)];
+    const std::int64_t area = (std::int64_t{q.x} - p.x) * (std::int64_t{r.y} - p.y) -
+                              (std::int64_t{q.y} - p.y) * (std::int64_t{r.x} - p.x);
+    if (area == 0) continue;
+    if (area < 0) std::swap(q, r);
+    SetupTriangle& t = out[static_cast<std::size_t>(result.count)];
+    t.x0 = std::max(0, first_centre(std::min({p.x, q.x, r.x})));
+    t.y0 = std::max(0, first_centre(std::min({p.y, q.y, r.y})));
+    t.x1 = std::min(viewport.width, after_last_centre(std::max({p.x, q.x, r.x})));
+    t.y1 = std::min(viewport.height, after_last_centre(std::max({p.y, q.y, r.y})));
+    if (t.x0 >= t.x1 || t.y0 >= t.y1) continue;
+    t.edges = {edge(p, q, options.coverage), edge(q, r, options.coverage),
+               edge(r, p, options.coverage)};
+    t.anchor_x = t.x0 & -tile_size;
+    t.anchor_y = t.y0 & -tile_size;
+    const double at_x = plane.a * (t.anchor_x + 0.5);
+    const double at_y = plane.b * (t.anchor_y + 0.5);
+    double value = (at_x + at_y) + plane.c;
+    if (options.rounding == DepthRounding::lowered) {
+      const double terms_here = std::abs(value) +
+                                std::abs(plane.a) * (t.x1 - t.anchor_x + tile_size) +
+                                std::abs(plane.b) * (t.y1 - t.anchor_y + tile_size);
+      value -= plane_error * terms_here;
+      if (options.coverage == Coverage::whole_pixels) {
+        value -= 0.5 * (std::abs(plane.a) + std::abs(plane.b));
+      }
+    }
+    t.nearness = static_cast<float>(value);
+    t.step_x = static_cast<float>(plane.a);
+    t.step_y = static_cast<float>(plane.b);
+    t.id = id;
+    ++result.count;
+  }
+  return result;
+}
+
+}  // namespace vislab
