@@ -9,7 +9,7 @@ namespace {
 constexpr int subpixels = 256;
 constexpr double greatest_position = 32'768.0;  // pixels
 // A determinant below this part of its terms is rounding: the triangle is seen edge-on.
-constexpr double least_determinant = 1e-10;
+constexpr double least_determinant = 1e-9;
 // Of the terms of a plane's equation: what rounding to float, sums of three and a determinant
 // that is just not edge-on can do, and some more.
 constexpr double plane_error = 1.0 / 524'288.0;
@@ -50,10 +50,41 @@ void clip(Polygon& polygon, Distance&& distance) {
   polygon = kept;
 }
 
-/// Nearness as a function of the window position: a x + b y + c.
+/// Nearness as a function of the window position: a x + b y + value, from the centre of a pixel.
 struct NearnessPlane {
-  double a, b, c;
+  double a, b, value;
 };
+
+/// From the corners before clipping. The pixel's centre is taken off the window positions first:
+/// with numbers as small as the triangle the determinant keeps its digits wherever it is seen.
+/// False if the triangle is seen edge-on, up to rounding.
+bool nearness_plane(const std::array<Homogeneous, 3>& corners, bool perspective, int pixel_x,
+                    int pixel_y, NearnessPlane& plane) {
+  std::array<Homogeneous, 3> v = corners;
+  for (Homogeneous& corner : v) {
+    corner.x -= (pixel_x + 0.5) * corner.w;
+    corner.y -= (pixel_y + 0.5) * corner.w;
+  }
+  // Cofactors of the matrix of the corners; a x + b y + value w takes each corner to its nearness
+  // times w.
+  double determinant = 0.0, terms = 0.0, a = 0.0, b = 0.0, value = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Homogeneous& q = v[(i + 1) % 3];
+    const Homogeneous& r = v[(i + 2) % 3];
+    const double qr = q.y * r.w;
+    const double rq = q.w * r.y;
+    determinant += v[i].x * (qr - rq);
+    terms += std::abs(v[i].x) * (std::abs(qr) + std::abs(rq));
+    const double nearness = perspective ? 1.0 : -v[i].depth;
+    a += nearness * (qr - rq);
+    b += nearness * (q.w * r.x - q.x * r.w);
+    value += nearness * (q.x * r.y - q.y * r.x);
+  }
+  // Nor if anything is NaN or infinite.
+  if (!(std::abs(determinant) > least_determinant * terms) || !(terms < 1e300)) return false;
+  plane = {a / determinant, b / determinant, value / determinant};
+  return true;
+}
 
 struct Snapped {
   std::int32_t x, y;
@@ -94,18 +125,6 @@ SetupResult set_up_triangle(const WindowTransform& window,
   for (std::size_t i = 0; i < 3; ++i) {
     v[i] = {vertices[i].x, vertices[i].y, perspective ? vertices[i].depth : 1.0, vertices[i].depth};
   }
-  // Signed area times the w of all: cofactors of the matrix of the corners.
-  const std::array<double, 3> minors{v[1].y * v[2].w - v[1].w * v[2].y,
-                                     v[2].y * v[0].w - v[2].w * v[0].y,
-                                     v[0].y * v[1].w - v[0].w * v[1].y};
-  const double determinant = v[0].x * minors[0] + v[1].x * minors[1] + v[2].x * minors[2];
-  const double terms = std::abs(v[0].x) * (std::abs(v[1].y * v[2].w) + std::abs(v[1].w * v[2].y)) +
-                       std::abs(v[1].x) * (std::abs(v[2].y * v[0].w) + std::abs(v[2].w * v[0].y)) +
-                       std::abs(v[2].x) * (std::abs(v[0].y * v[1].w) + std::abs(v[0].w * v[1].y));
-  // Also not if anything is NaN or infinite.
-  if (!(std::abs(determinant) > least_determinant * terms) || !(terms < 1e300)) return result;
-  result.facing = determinant > 0.0 ? Facing::front : Facing::back;
-
   Polygon polygon;
   for (std::size_t i = 0; i < 3; ++i) polygon.corners[i] = v[i];
   polygon.count = 3;
@@ -125,21 +144,6 @@ SetupResult set_up_triangle(const WindowTransform& window,
   if (beyond(above)) clip(polygon, above);
   if (polygon.count < 3) return result;
 
-  // a x + b y + c w takes each corner to its nearness times w.
-  std::array<double, 3> values;
-  for (std::size_t i = 0; i < 3; ++i) values[i] = perspective ? 1.0 : -v[i].depth;
-  NearnessPlane plane{0.0, 0.0, 0.0};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Homogeneous& q = v[(i + 1) % 3];
-    const Homogeneous& r = v[(i + 2) % 3];
-    plane.a += values[i] * minors[i];
-    plane.b += values[i] * (q.w * r.x - q.x * r.w);
-    plane.c += values[i] * (q.x * r.y - q.y * r.x);
-  }
-  plane.a /= determinant;
-  plane.b /= determinant;
-  plane.c /= determinant;
-
   std::array<Snapped, 8> corners;
   for (int i = 0; i < polygon.count; ++i) {
     const auto at = static_cast<std::size_t>(i);
@@ -152,6 +156,7 @@ SetupResult set_up_triangle(const WindowTransform& window,
     const std::int64_t area = (std::int64_t{q.x} - p.x) * (std::int64_t{r.y} - p.y) -
                               (std::int64_t{q.y} - p.y) * (std::int64_t{r.x} - p.x);
     if (area == 0) continue;
+    result.facing = area > 0 ? Facing::front : Facing::back;
     if (area < 0) std::swap(q, r);
     SetupTriangle& t = out[static_cast<std::size_t>(result.count)];
     t.x0 = std::max(0, first_centre(std::min({p.x, q.x, r.x})));
@@ -163,9 +168,9 @@ SetupResult set_up_triangle(const WindowTransform& window,
                edge(r, p, options.coverage)};
     t.anchor_x = t.x0 & -tile_size;
     t.anchor_y = t.y0 & -tile_size;
-    const double at_x = plane.a * (t.anchor_x + 0.5);
-    const double at_y = plane.b * (t.anchor_y + 0.5);
-    double value = (at_x + at_y) + plane.c;
+    NearnessPlane plane;
+    if (!nearness_plane(v, perspective, t.anchor_x, t.anchor_y, plane)) continue;
+    double value = plane.value;
     if (options.rounding == DepthRounding::lowered) {
       const double terms_here = std::abs(value) +
                                 std::abs(plane.a) * (t.x1 - t.anchor_x + tile_size) +
