@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "common/scene/error.h"
+#include "common/scene/generators/occlusion_settings.h"
 #include "common/scene/settings.h"
 
 namespace vislab {
@@ -243,6 +245,11 @@ CityParameters read_city(const Settings& table) {
   city.roof_share = table.number("roof_share", 0.0, 1.0, city.roof_share);
   city.street_boxes =
       static_cast<std::uint32_t>(table.whole("street_boxes", 0, 10'000'000, city.street_boxes));
+  city.indoor_boxes =
+      static_cast<std::uint32_t>(table.whole("indoor_boxes", 0, 10'000'000, city.indoor_boxes));
+  city.bridges =
+      static_cast<std::uint32_t>(table.whole("bridges", 0, (city.blocks_z + 1) / 2, city.bridges));
+  city.bridge_clearance = table.number("bridge_clearance", 0.0, 10.0, city.bridge_clearance);
   city.seed = seed_of(table);
   return city;
 }
@@ -276,12 +283,14 @@ void read_generator(const Settings& table, SceneDescription& scene) {
     scene.source = read_mesh_field(table);
   } else if (kind == "room_ring") {
     scene.source = read_room_ring(table);
+  } else if (std::optional<SceneMaker> maker = read_occlusion_scene(kind, table)) {
+    scene.source = std::move(*maker);
   } else {
-    const InputError unknown =
-        unknown_name("generator", kind,
-                     {"asteroid_belt", "box_field", "bumpy_sphere", "city", "grazing_slabs",
-                      "hares", "houses", "mesh_field", "room_ring"});
-    throw InputError(table.where() + ": " + unknown.what());
+    std::vector<std::string> known = occlusion_scene_kinds();
+    known.insert(known.end(), {"asteroid_belt", "box_field", "bumpy_sphere", "city",
+                               "grazing_slabs", "hares", "houses", "mesh_field", "room_ring"});
+    std::sort(known.begin(), known.end());
+    throw InputError(table.where() + ": " + unknown_name("generator", kind, known).what());
   }
   table.done();
 }

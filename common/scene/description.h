@@ -4,7 +4,8 @@
 // `generator` with its `kind`. Keys are named as the members below and in generators.h; a mesh's
 // file has the keys `package` and `file`. Besides, fields know `edge_m` instead of half sizes;
 // objects and the meshes of generators `shape` = "ribbed_sphere" | "bumpy_sphere" instead of a
-// file; objects and `mesh` know `up` = "y" | "z", objects `heading_deg`, and every scene without
+// file; the generators that are made for occlusion have their own keys (generators/occlusion.h);
+// objects and `mesh` know `up` = "y" | "z", objects `heading_deg`, and every scene without
 // cells `offset`.
 #pragma once
 
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "common/scene/generators/generators.h"
+#include "common/scene/generators/occlusion_settings.h"
 
 namespace vislab {
 
@@ -85,7 +87,7 @@ struct SceneDescription {
   glm::dvec3 offset{0.0};    // added to all objects' places, metres
   std::variant<ModelSource, QuakeSource, std::vector<PlacedMesh>, HaresSource, MeshFieldSource,
                AsteroidBeltParameters, BoxFieldParameters, BumpySphereParameters, CityParameters,
-               GrazingSlabsParameters, HousesParameters, RoomRingParameters>
+               GrazingSlabsParameters, HousesParameters, RoomRingParameters, SceneMaker>
       source;
 };
 

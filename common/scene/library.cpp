@@ -109,6 +109,7 @@ class Maker {
   Scene operator()(const CityParameters& city) const { return make_city(city); }
   Scene operator()(const GrazingSlabsParameters& slabs) const { return make_grazing_slabs(slabs); }
   Scene operator()(const RoomRingParameters& ring) const { return make_room_ring(ring); }
+  Scene operator()(const SceneMaker& make) const { return make(); }
 
  private:
   Scene model_of(const MeshSource& mesh) const {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "common/geometry/random.h"
@@ -65,6 +66,34 @@ void add_street_box(Scene& scene, const CityParameters& city, Random& random) {
   }
 }
 
+/// Where it does not come through the walls of one of the buildings, which are the first objects.
+void add_indoor_box(Scene& scene, std::uint32_t buildings, Random& random) {
+  constexpr double wall_m = 0.1;
+  glm::dvec3 half;
+  for (int axis = 0; axis < 3; ++axis) half[axis] = random.uniform(0.3, 2.0);
+  const glm::dmat4x3& building = scene.objects[random.below(buildings)].transform;
+  const glm::dvec3 room(building[0].x, 0.5 * building[1].y, building[2].z);
+  // Below half the height, where a house with a gable roof is still a box.
+  glm::dvec3 center = building[3] - glm::dvec3(0.0, room.y, 0.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double reach = room[axis] - half[axis] - wall_m;
+    half[axis] = std::min(half[axis], room[axis] - 2.0 * wall_m);
+    center[axis] += random.uniform(-1.0, 1.0) * std::max(reach, 0.0);
+  }
+  scene.objects.push_back({0, box_transform(center, half), none_id});
+}
+
+void add_bridge(Scene& scene, const CityParameters& city, std::uint32_t number) {
+  constexpr double building_height_m = 20.0;
+  constexpr glm::dvec3 half_deck(0.0, 0.75, 5.0);
+  const double first = std::floor(0.5 * city.blocks_z) - (city.bridges - 1.0);
+  const double street = first + 2.0 * number - 0.5 * city.blocks_z;
+  const glm::dvec3 center(0.0, city.bridge_clearance * building_height_m + half_deck.y,
+                          street * pitch_m);
+  const glm::dvec3 half(0.5 * city.blocks_x * pitch_m, half_deck.y, half_deck.z);
+  scene.objects.push_back({0, box_transform(center, half), none_id});
+}
+
 }  // namespace
 
 Scene make_city(const CityParameters& parameters) {
@@ -81,6 +110,11 @@ Scene make_city(const CityParameters& parameters) {
   for (std::uint32_t i = 0; i < parameters.street_boxes; ++i) {
     add_street_box(scene, parameters, random);
   }
+  const std::uint32_t buildings = parameters.blocks_x * parameters.blocks_z;
+  for (std::uint32_t i = 0; i < parameters.indoor_boxes; ++i) {
+    add_indoor_box(scene, buildings, random);
+  }
+  for (std::uint32_t i = 0; i < parameters.bridges; ++i) add_bridge(scene, parameters, i);
   return scene;
 }
 

@@ -59,13 +59,18 @@ struct CityParameters {
   std::uint32_t blocks_x = 50, blocks_z = 40;  // one building a block
   double roof_share = 0.0;                     // buildings with a gable roof instead of a flat one
   std::uint32_t street_boxes = 0;              // small boxes between the buildings
+  std::uint32_t indoor_boxes = 0;              // as large, inside the buildings: nobody sees them
+  std::uint32_t bridges = 0;                   // over the middle streets that run along x
+  double bridge_clearance = 0.5;               // below a deck, in building heights of 20 m
   std::uint64_t seed = 1;
 };
 
 /// Random houses on a grid of streets with a pitch of 25 m, centred at the origin on the plane y =
 /// 0: half widths 6 to 10 m, heights 8 to 30 m, one in ten 40 to 80 m. Street boxes have half sizes
 /// of 0.3 to 2 m; they rest on the ground, or, one in ten, hover at 5 to 60 m. They lie along the
-/// streets and keep 1 m from the middle of every street, so that a camera can walk there.
+/// streets and keep 1 m from the middle of every street, so that a camera can walk there. Buildings
+/// come first, then street boxes, indoor boxes and bridges, and none of these changes those before
+/// it. A bridge is one deck of 10 m by 1.5 m along a whole street; bridges are two streets apart.
 Scene make_city(const CityParameters& parameters);
 
 struct RoomRingParameters {
