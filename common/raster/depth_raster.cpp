@@ -4,39 +4,31 @@
 
 namespace vislab {
 
-RasterMesh::RasterMesh(const Mesh& mesh) : positions_(mesh.positions), triangles_(mesh.triangles) {}
+RasterMesh::RasterMesh(const Mesh& mesh) : positions_(mesh.positions), triangles_(mesh.triangles) {
+  for (const glm::uvec3& triangle : triangles_) {
+    for (int i = 0; i < 3; ++i) bounds_.extend(positions_[triangle[i]]);
+  }
+}
 
 std::size_t RasterMesh::bytes() const {
   return positions_.capacity() * sizeof(glm::vec3) + triangles_.capacity() * sizeof(glm::uvec3);
 }
 
 DepthRaster::DepthRaster(const Viewport& size, const RasterOptions& options)
-    : options_(options),
-      window_(Camera{}, size),
-      tiles_x_((size.width + tile_size - 1) / tile_size),
-      tiles_y_((size.height + tile_size - 1) / tile_size) {
-  const auto pixels = static_cast<std::size_t>(tiles_x_) * static_cast<std::size_t>(tiles_y_) *
-                      static_cast<std::size_t>(tile_pixels);
-  nearness_.resize(pixels);
-  if (options.ids) ids_.resize(pixels);
-}
+    : options_(options), window_(Camera{}, size), tiles_(size, options.ids) {}
 
 void DepthRaster::begin(const Camera& camera) {
   window_ = WindowTransform(camera, window_.viewport());
-  far_ = static_cast<float>(window_.nearness(camera.lens.far_m));
-  std::ranges::fill(nearness_, far_);
-  std::ranges::fill(ids_, none_id);
+  tiles_.clear(static_cast<float>(window_.nearness(camera.lens.far_m)));
 }
 
-std::size_t DepthRaster::pixel(int x, int y) const {
-  const int tile = (y / tile_size) * tiles_x_ + x / tile_size;
-  return static_cast<std::size_t>(tile) * tile_pixels +
-         static_cast<std::size_t>((y % tile_size) * tile_size + x % tile_size);
+float DepthRaster::nearness(int x, int y) const {
+  return tiles_.nearness(tiles_.index(x / tile_size, y / tile_size), x % tile_size, y % tile_size);
 }
 
-float DepthRaster::nearness(int x, int y) const { return nearness_[pixel(x, y)]; }
-
-std::uint32_t DepthRaster::id(int x, int y) const { return ids_[pixel(x, y)]; }
+std::uint32_t DepthRaster::id(int x, int y) const {
+  return tiles_.id(tiles_.index(x / tile_size, y / tile_size), x % tile_size, y % tile_size);
+}
 
 std::size_t DepthRaster::draw(std::span<const RasterDraw> draws) {
   std::size_t drawn = 0;
@@ -65,10 +57,14 @@ std::size_t DepthRaster::draw(std::span<const RasterDraw> draws) {
 
 void DepthRaster::draw(const SetupTriangle& triangle) {
   for_each_covered_pixel(triangle, [&](int x, int y, float nearness) {
-    const std::size_t at = pixel(x, y);
-    if (nearness <= nearness_[at]) return;
-    nearness_[at] = nearness;
-    if (!ids_.empty()) ids_[at] = triangle.id;
+    const std::size_t tile = tiles_.index(x / tile_size, y / tile_size);
+    tiles_.store(x / tile_size, y / tile_size);
+    const int at = (y % tile_size) * tile_size + x % tile_size;
+    float& pixel = tiles_.pixels(tile)[at];
+    if (nearness <= pixel) return;
+    pixel = nearness;
+    tiles_.nearest()[tile] = std::max(tiles_.nearest()[tile], nearness);
+    if (tiles_.has_ids()) tiles_.ids(tile)[at] = triangle.id;
   });
 }
 
@@ -94,8 +90,6 @@ bool DepthRaster::hides(const Aabb& box) const {
   return hides(place);
 }
 
-std::size_t DepthRaster::bytes() const {
-  return nearness_.capacity() * sizeof(float) + ids_.capacity() * sizeof(std::uint32_t);
-}
+std::size_t DepthRaster::bytes() const { return tiles_.bytes(); }
 
 }  // namespace vislab

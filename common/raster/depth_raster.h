@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "common/raster/box_window.h"
+#include "common/raster/tile_store.h"
 #include "common/raster/triangle_setup.h"
 #include "common/scene/scene.h"
 
@@ -29,11 +30,14 @@ class RasterMesh {
 
   std::span<const glm::vec3> positions() const { return positions_; }
   std::span<const glm::uvec3> triangles() const { return triangles_; }
+  /// Of the vertices that triangles use.
+  const Aabb& bounds() const { return bounds_; }
   std::size_t bytes() const;
 
  private:
   std::vector<glm::vec3> positions_;
   std::vector<glm::uvec3> triangles_;
+  Aabb bounds_;
 };
 
 /// Triangles [first, first + count) of a mesh, placed in the world; they get the ids first_id,
@@ -56,6 +60,7 @@ struct RasterOptions {
 
 class DepthRaster {
  public:
+  /// Throws InputError for sizes below 1 x 1 and beyond 16,384 x 16,384.
   DepthRaster(const Viewport& size, const RasterOptions& options);
 
   /// Starts a frame: clears everything to the far plane. The camera's aspect may differ from the
@@ -77,19 +82,17 @@ class DepthRaster {
   float nearness(int x, int y) const;
   /// none_id where nothing is drawn. Only with RasterOptions::ids.
   std::uint32_t id(int x, int y) const;
+  /// What queries read.
+  const TileStore& tiles() const { return tiles_; }
 
   std::size_t bytes() const;
 
  private:
-  std::size_t pixel(int x, int y) const;
   void draw(const SetupTriangle& triangle);
 
   RasterOptions options_;
   WindowTransform window_;
-  int tiles_x_ = 0, tiles_y_ = 0;
-  float far_ = 0.0F;
-  std::vector<float> nearness_;  // by tile, then row, then column
-  std::vector<std::uint32_t> ids_;
+  TileStore tiles_;
 };
 
 }  // namespace vislab
