@@ -22,7 +22,6 @@
 namespace vislab {
 namespace {
 
-using frustum_culling::FollowedStructure;
 using frustum_culling::FrustumTester;
 using frustum_culling::ObjectTester;
 using frustum_culling::PlaneMask;

@@ -56,6 +56,8 @@ class Bvh : public SpatialStructure {
     return {objects_.data() + links_[node].first_below, links_[node].count_below};
   }
   std::span<const ObjectId> unplaced() const override { return unplaced_; }
+  /// Objects at and below the node.
+  std::uint32_t count_below(NodeIndex node) const { return links_[node].count_below; }
   std::size_t bytes() const override;
 
   /// Sum of the surface areas of all nodes, metres squared. O(n).
