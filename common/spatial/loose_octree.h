@@ -48,6 +48,8 @@ class LooseOctree final : public SpatialStructure {
     return runs_.of(details_[node].objects);
   }
   std::span<const ObjectId> unplaced() const override { return unplaced_; }
+  /// Objects at and below the node.
+  std::uint32_t count_below(NodeIndex node) const { return details_[node].below; }
   std::size_t bytes() const override;
 
   /// Nodes in use, empty ones among them.
