@@ -117,6 +117,10 @@ class ICuller {
   virtual void update(const Frame& /*frame*/, const Changes& /*changes*/) {}
   /// From-region methods: emits the set of a cell and returns true.
   virtual bool region(CellId /*cell*/, DrawSink& /*out*/) { return false; }
+  /// Hidden-surface algorithms: the image that the last cull() painted, which is what they are judged
+  /// by beside the set: the triangle that owns each pixel, row by row from the bottom, none_id for
+  /// the background. Empty for methods that paint none. Valid until the next cull().
+  virtual std::span<const TriangleId> surface_image() const { return {}; }
   /// Memory of what build() made.
   virtual std::size_t bytes() const { return 0; }
   virtual Counters counters() const { return {}; }
