@@ -45,6 +45,13 @@ ModelSource read_model(const Settings& table) {
   return model;
 }
 
+ModelSource read_joined_model(const Settings& table) {
+  ModelSource model{read_mesh_keys(table), read_z_up(table)};
+  if (table.has("largest_m")) model.largest_m = table.number("largest_m", 1e-3, huge);
+  table.done();
+  return model;
+}
+
 QuakeSource read_quake(const Settings& table) {
   const QuakeSource quake{read_file_source(table)};
   table.done();
@@ -306,16 +313,24 @@ SceneDescription read_scene_description(const std::filesystem::path& file) {
   scene.default_path = settings.text("default_path", "");
   scene.offset = settings.point("offset", glm::dvec3(0.0));
   const bool mesh = settings.has("mesh");
+  const bool meshes = settings.has("meshes");
   const bool quake = settings.has("quake3");
   const bool objects = settings.has("objects");
   const bool generator = settings.has("generator");
   settings.done();
-  if (int{mesh} + int{quake} + int{objects} + int{generator} != 1) {
+  if (int{mesh} + int{meshes} + int{quake} + int{objects} + int{generator} != 1) {
     throw InputError(settings.where() +
-                     ": a scene needs exactly one of the tables mesh, quake3, objects and " +
-                     "generator");
+                     ": a scene needs exactly one of the tables mesh, meshes, quake3, objects " +
+                     "and generator");
   }
   if (mesh) scene.source = read_model(settings.table("mesh"));
+  if (meshes) {
+    std::vector<ModelSource> models;
+    for (const Settings& table : settings.tables("meshes")) {
+      models.push_back(read_joined_model(table));
+    }
+    scene.source = std::move(models);
+  }
   if (quake) scene.source = read_quake(settings.table("quake3"));
   if (objects) {
     std::vector<PlacedMesh> placed;

@@ -1,16 +1,19 @@
 // Scene descriptions: small TOML files that say where a scene comes from (data/scenes).
 //
-// A scene is one of the tables `mesh` and `quake3`, a list of tables `objects`, or a table
-// `generator` with its `kind`. Keys are named as the members below and in generators.h; a mesh's
-// file has the keys `package` and `file`. Besides, fields know `edge_m` instead of half sizes;
-// objects and the meshes of generators `shape` = "ribbed_sphere" | "bumpy_sphere" instead of a
-// file; the generators that are made for occlusion have their own keys (generators/occlusion.h);
+// A scene is one of the tables `mesh` and `quake3`, a list of tables `meshes` (files that belong
+// together, each in the world's frame; what lies exactly where
+// the same lies already is left out) or `objects`, or
+// a table `generator` with its `kind`. Keys are named as the members below and in generators.h; a
+// mesh's file has the keys `package` and `file`. Besides, fields know `edge_m` instead of half
+// sizes; objects and the meshes of generators `shape` = "ribbed_sphere" | "bumpy_sphere" instead of
+// a file; the generators that are made for occlusion have their own keys (generators/occlusion.h);
 // objects and `mesh` know `up` = "y" | "z", objects `heading_deg`, and every scene without
 // cells `offset`.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <variant>
 #include <vector>
@@ -35,10 +38,12 @@ struct MeshSource {
   friend bool operator==(const MeshSource&, const MeshSource&) = default;
 };
 
-/// The table `mesh`: a whole file.
+/// The table `mesh`, or one of the tables `meshes`: a whole file.
 struct ModelSource {
   MeshSource mesh;
   bool z_up = false;  // the file's z axis is up, not y
+  // Of `meshes` only: objects whose box is longer on any side are left out (skies).
+  double largest_m = std::numeric_limits<double>::infinity();
 };
 
 struct QuakeSource {
@@ -85,9 +90,10 @@ struct SceneDescription {
   std::string description;
   std::string default_path;  // empty: fitted to the scene
   glm::dvec3 offset{0.0};    // added to all objects' places, metres
-  std::variant<ModelSource, QuakeSource, std::vector<PlacedMesh>, HaresSource, MeshFieldSource,
-               AsteroidBeltParameters, BoxFieldParameters, BumpySphereParameters, CityParameters,
-               GrazingSlabsParameters, HousesParameters, RoomRingParameters, SceneMaker>
+  std::variant<ModelSource, std::vector<ModelSource>, QuakeSource, std::vector<PlacedMesh>,
+               HaresSource, MeshFieldSource, AsteroidBeltParameters, BoxFieldParameters,
+               BumpySphereParameters, CityParameters, GrazingSlabsParameters, HousesParameters,
+               RoomRingParameters, SceneMaker>
       source;
 };
 

@@ -1,6 +1,7 @@
 #include "common/scene/library.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 #include <variant>
@@ -65,6 +66,29 @@ glm::dmat4x3 placement(const PlacedMesh& placed, const Mesh& mesh) {
   return {turn[0], turn[1], turn[2], placed.at - foot};
 }
 
+glm::dmat4x3 turned_up(const ModelSource& model, const Object& object) {
+  return model.z_up ? upright(true) * object.transform : object.transform;
+}
+
+/// Has the scene the same mesh in the same place already, but for rounding in what placed it?
+bool has_twin(const Scene& scene, const Object& object, const Mesh& mesh) {
+  constexpr double rounding_m = 1e-5;
+  for (const Object& other : scene.objects) {
+    const Mesh& known = scene.meshes[other.mesh];
+    if (known.triangles != mesh.triangles || known.positions.size() != mesh.positions.size()) {
+      continue;
+    }
+    bool same = true;
+    for (std::size_t i = 0; same && i < mesh.positions.size(); ++i) {
+      const glm::dvec3 a = object.transform * glm::dvec4(mesh.positions[i], 1.0);
+      const glm::dvec3 b = other.transform * glm::dvec4(known.positions[i], 1.0);
+      same = glm::distance(a, b) <= rounding_m;
+    }
+    if (same) return true;
+  }
+  return false;
+}
+
 /// Makes the scene that a description names; one overload for each source.
 class Maker {
  public:
@@ -73,11 +97,30 @@ class Maker {
 
   Scene operator()(const ModelSource& model) const {
     Scene scene = model_of(model.mesh);
-    if (model.z_up) {
-      const glm::dmat3 turn = upright(true);
-      for (Object& object : scene.objects) object.transform = turn * object.transform;
-    }
+    for (Object& object : scene.objects) object.transform = turned_up(model, object);
     return scene;
+  }
+  Scene operator()(const std::vector<ModelSource>& models) const {
+    Scene all;
+    for (const ModelSource& model : models) {
+      const Scene scene = model_of(model.mesh);
+      for (Object object : scene.objects) {
+        object.transform = turned_up(model, object);
+        const Mesh& mesh = scene.meshes[object.mesh];
+        const glm::dvec3 half =
+            transformed(bounds_of(mesh.positions), object.transform).half_size();
+        if (2.0 * std::max({half.x, half.y, half.z}) > model.largest_m) continue;
+        if (has_twin(all, object, mesh)) continue;
+        object.mesh = static_cast<MeshId>(all.meshes.size());
+        all.meshes.push_back(mesh);
+        all.objects.push_back(object);
+      }
+    }
+    if (all.objects.empty()) {
+      throw InputError("scene " + scene_.name +
+                       ": `largest_m` leaves no object; it must be larger");
+    }
+    return all;
   }
   Scene operator()(const QuakeSource& quake) const {
     return import_quake_world(located(quake.source, scene_, folders_));

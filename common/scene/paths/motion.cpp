@@ -172,7 +172,41 @@ class Maker {
     });
   }
 
+  std::vector<Changes> operator()(const SlideMotion& slide) const {
+    require(slide.object);
+    const double speed_m_s = glm::length(slide.velocity_m_s);
+    return moves(scene_, {slide.object}, times_, [&](ObjectId id, double time) {
+      const glm::dmat4x3& built = scene_.objects[id].transform;
+      if (speed_m_s == 0.0) return built;
+      const double way_m =
+          reflected(0.0, speed_m_s * time * motion_.duration_s, -slide.reach_m, slide.reach_m);
+      return shifted(built, slide.velocity_m_s * (way_m / speed_m_s));
+    });
+  }
+
+  std::vector<Changes> operator()(const ToggleMotion& toggle) const {
+    require(toggle.object);
+    std::vector<Changes> changes(times_.size());
+    bool was_hidden = false;
+    for (std::size_t i = 0; i < times_.size(); ++i) {
+      const double toggles = std::floor(times_[i] * motion_.duration_s * toggle.toggles_per_s);
+      const bool hidden = std::fmod(toggles, 2.0) == 1.0;
+      if (hidden != was_hidden) {
+        (hidden ? changes[i].hidden : changes[i].shown).push_back(toggle.object);
+      }
+      was_hidden = hidden;
+    }
+    return changes;
+  }
+
  private:
+  void require(ObjectId object) const {
+    if (object < scene_.object_count()) return;
+    throw InputError("object " + std::to_string(object) +
+                     " cannot slide or toggle; the scene has " + "objects 0 to " +
+                     std::to_string(scene_.object_count() - 1));
+  }
+
   const Motion& motion_;
   const Scene& scene_;
   const Times& times_;

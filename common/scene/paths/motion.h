@@ -41,8 +41,23 @@ struct DepartMotion {
   double factor = 2.0;
 };
 
+/// One object goes straight at a constant velocity, and turns back whenever it is reach_m from
+/// where it was built.
+struct SlideMotion {
+  ObjectId object = 0;
+  glm::dvec3 velocity_m_s{1.0, 0.0, 0.0};
+  double reach_m = 1e6;
+};
+
+/// One object is hidden and shown in turn, so often a second; it is shown at first.
+struct ToggleMotion {
+  ObjectId object = 0;
+  double toggles_per_s = 1.0;
+};
+
 struct Motion {
-  std::variant<RevolveMotion, DriftMotion, ChurnMotion, DepartMotion> kind;
+  std::variant<RevolveMotion, DriftMotion, ChurnMotion, DepartMotion, SlideMotion, ToggleMotion>
+      kind;
   double duration_s = 2.0;  // from the path's beginning (u = 0) to its end (u = 1)
   std::uint64_t seed = 1;
 };
@@ -54,7 +69,8 @@ inline constexpr std::size_t max_path_moves = 20'000'000;
 /// At time 0 all is as built. Positions are functions of time, not sums of steps: a path that is
 /// sampled more finely goes through the same. Objects whose transform stays the same are left out.
 /// What an object does depends on the seed and its id. Throws InputError if there are more than
-/// max_path_moves, or too few objects for a churn. O(frames * movers).
+/// max_path_moves, too few objects for a churn, or no such object to slide or toggle. O(frames *
+/// movers).
 std::vector<Changes> changes_of(const Motion& motion, const Scene& scene,
                                 const std::vector<double>& times);
 

@@ -36,6 +36,21 @@ DepartMotion read_depart(const Settings& table) {
   return depart;
 }
 
+ObjectId read_object(const Settings& table) {
+  return static_cast<ObjectId>(table.whole("object", 0, none_id - 1, 0));
+}
+
+SlideMotion read_slide(const Settings& table) {
+  SlideMotion slide;
+  slide.object = read_object(table);
+  slide.velocity_m_s = table.point("velocity_m_s");
+  if (!(glm::length(slide.velocity_m_s) <= fastest_m_s)) {
+    throw InputError(table.where() + ": `velocity_m_s` is wrong; it must be at most 1e9 m/s");
+  }
+  slide.reach_m = table.number("reach_m", 1e-6, slide.reach_m, slide.reach_m);
+  return slide;
+}
+
 }  // namespace
 
 Motion read_motion(const Settings& table, const PathPoints& points, const Scene& scene) {
@@ -52,10 +67,15 @@ Motion read_motion(const Settings& table, const PathPoints& points, const Scene&
     motion.kind = ChurnMotion{static_cast<std::uint32_t>(table.whole("count", 1, 1'000'000'000))};
   } else if (kind == "depart") {
     motion.kind = read_depart(table);
+  } else if (kind == "slide") {
+    motion.kind = read_slide(table);
+  } else if (kind == "toggle") {
+    motion.kind = ToggleMotion{read_object(table), table.number("toggles_per_s", 0.0, 1e6)};
   } else {
-    throw InputError(
-        table.where() + ": " +
-        unknown_name("kind of motion", kind, {"churn", "depart", "drift", "revolve"}).what());
+    throw InputError(table.where() + ": " +
+                     unknown_name("kind of motion", kind,
+                                  {"churn", "depart", "drift", "revolve", "slide", "toggle"})
+                         .what());
   }
   table.done();
   return motion;
