@@ -50,7 +50,7 @@ void TileStore::clear(float nearness) {
   std::ranges::fill(plane_value_, nearness);
   std::ranges::fill(plane_step_x_, 0.0F);
   std::ranges::fill(plane_step_y_, 0.0F);
-  std::ranges::fill(stored_, std::uint8_t{0});
+  std::ranges::fill(stored_, 0U);
   std::ranges::fill(plane_id_, none_id);
 }
 
@@ -71,7 +71,7 @@ void TileStore::store_plane(int x, int y) {
 
 std::size_t TileStore::bytes() const {
   const std::size_t headers = stored_.size();
-  return headers * (5 * sizeof(float) + 1 + tile_pixels * sizeof(float)) +
+  return headers * (6 * sizeof(float) + tile_pixels * sizeof(float)) +
          (has_ids_ ? headers * (1 + tile_pixels) * sizeof(std::uint32_t) : 0);
 }
 

@@ -48,7 +48,7 @@ class TileStore {
   const float* nearest() const { return nearest_.data(); }
   /// 1 if the tile's pixels are in memory, else 0, and the next three tell what they are: pixel
   /// (dx, dy) of the tile has plane_value + (plane_step_x dx + plane_step_y dy).
-  const std::uint8_t* stored() const { return stored_.data(); }
+  const std::uint32_t* stored() const { return stored_.data(); }
   const float* plane_value() const { return plane_value_.data(); }
   const float* plane_step_x() const { return plane_step_x_.data(); }
   const float* plane_step_y() const { return plane_step_y_.data(); }
@@ -56,7 +56,7 @@ class TileStore {
   const std::uint32_t* plane_id() const { return plane_id_.data(); }
   float* farthest() { return farthest_.data(); }
   float* nearest() { return nearest_.data(); }
-  std::uint8_t* stored() { return stored_.data(); }
+  std::uint32_t* stored() { return stored_.data(); }
   float* plane_value() { return plane_value_.data(); }
   float* plane_step_x() { return plane_step_x_.data(); }
   float* plane_step_y() { return plane_step_y_.data(); }
@@ -102,7 +102,7 @@ class TileStore {
   std::vector<float> farthest_, nearest_;
   std::vector<float> plane_value_, plane_step_x_, plane_step_y_;
   std::vector<std::uint32_t> plane_id_;
-  std::vector<std::uint8_t> stored_;
+  std::vector<std::uint32_t> stored_;
   // Not touched before a tile is stored: large images cost what is drawn.
   Memory<float> pixels_;
   Memory<std::uint32_t> ids_;

@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/raster/setup_constants.h"
+
 namespace vislab {
 namespace {
 
-constexpr int subpixels = 256;
-constexpr double greatest_position = 32'768.0;  // pixels
-// A determinant below this part of its terms is rounding: the triangle is seen edge-on.
-constexpr double least_determinant = 1e-9;
-// Of the terms of a plane's equation: what rounding to float, sums of three and a determinant
-// that is just not edge-on can do, and some more.
-constexpr double plane_error = 1.0 / 524'288.0;
+using setup::after_last_centre;
+using setup::first_centre;
+using setup::greatest_position;
+using setup::subpixels;
 
 struct Homogeneous {
   double x, y, w, depth;
@@ -57,7 +56,7 @@ struct NearnessPlane {
 
 /// From the corners before clipping. The pixel's centre is taken off the window positions first:
 /// with numbers as small as the triangle the determinant keeps its digits wherever it is seen.
-/// False if the triangle is seen edge-on, up to rounding.
+/// False if the triangle is seen edge-on, up to rounding, or anything is too large to be finite.
 bool nearness_plane(const std::array<Homogeneous, 3>& corners, bool perspective, int pixel_x,
                     int pixel_y, NearnessPlane& plane) {
   std::array<Homogeneous, 3> v = corners;
@@ -80,10 +79,12 @@ bool nearness_plane(const std::array<Homogeneous, 3>& corners, bool perspective,
     b += nearness * (q.w * r.x - q.x * r.w);
     value += nearness * (q.x * r.y - q.y * r.x);
   }
-  // Nor if anything is NaN or infinite.
-  if (!(std::abs(determinant) > least_determinant * terms) || !(terms < 1e300)) return false;
+  if (!(std::abs(determinant) > setup::least_determinant * terms) ||
+      !(terms < setup::greatest_terms)) {
+    return false;
+  }
   plane = {a / determinant, b / determinant, value / determinant};
-  return true;
+  return (std::abs(plane.a) + std::abs(plane.b)) + std::abs(plane.value) < setup::greatest_plane;
 }
 
 struct Snapped {
@@ -94,10 +95,6 @@ Snapped snapped(const Homogeneous& corner) {
   return {static_cast<std::int32_t>(std::floor(corner.x / corner.w * subpixels + 0.5)),
           static_cast<std::int32_t>(std::floor(corner.y / corner.w * subpixels + 0.5))};
 }
-
-/// Of the pixels whose centres lie in [low, high] (grid units): the first, and one after the last.
-std::int32_t first_centre(std::int32_t low) { return (low - subpixels / 2 + subpixels - 1) >> 8; }
-std::int32_t after_last_centre(std::int32_t high) { return ((high - subpixels / 2) >> 8) + 1; }
 
 WindowEdge edge(const Snapped& p, const Snapped& q, Coverage coverage) {
   const std::int64_t a = std::int64_t{p.y} - q.y;
@@ -124,6 +121,9 @@ SetupResult set_up_triangle(const WindowTransform& window,
   std::array<Homogeneous, 3> v;
   for (std::size_t i = 0; i < 3; ++i) {
     v[i] = {vertices[i].x, vertices[i].y, perspective ? vertices[i].depth : 1.0, vertices[i].depth};
+  }
+  for (const Homogeneous& p : v) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.depth)) return result;
   }
   Polygon polygon;
   for (std::size_t i = 0; i < 3; ++i) polygon.corners[i] = v[i];
@@ -175,7 +175,7 @@ SetupResult set_up_triangle(const WindowTransform& window,
       const double terms_here = std::abs(value) +
                                 std::abs(plane.a) * (t.x1 - t.anchor_x + tile_size) +
                                 std::abs(plane.b) * (t.y1 - t.anchor_y + tile_size);
-      value -= plane_error * terms_here;
+      value -= setup::plane_error * terms_here;
       if (options.coverage == Coverage::whole_pixels) {
         value -= 0.5 * (std::abs(plane.a) + std::abs(plane.b));
       }
