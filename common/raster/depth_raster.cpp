@@ -1,25 +1,144 @@
 #include "common/raster/depth_raster.h"
 
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 
+#include "common/raster/setup_kernel.h"
+#include "common/raster/tile_kernel.h"
+
 namespace vislab {
+namespace {
 
-RasterMesh::RasterMesh(const Mesh& mesh) : positions_(mesh.positions), triangles_(mesh.triangles) {
-  for (const glm::uvec3& triangle : triangles_) {
-    for (int i = 0; i < 3; ++i) bounds_.extend(positions_[triangle[i]]);
+/// Blocks that are drawn at once: they stay in the innermost caches.
+constexpr std::size_t blocks_at_once = 8;
+/// Clusters that a task of a thread sets up.
+constexpr std::size_t clusters_at_once = 64;
+
+/// The window's rows for a draw, which many clusters may share.
+class Rows {
+ public:
+  explicit Rows(const WindowTransform& window) : window_(window) {}
+  const WindowRows& of(const RasterDraw& draw) {
+    if (&draw != draw_) rows_ = window_.mesh(*draw.transform);
+    draw_ = &draw;
+    return rows_;
   }
-}
 
-std::size_t RasterMesh::bytes() const {
-  return positions_.capacity() * sizeof(glm::vec3) + triangles_.capacity() * sizeof(glm::uvec3);
-}
+ private:
+  const WindowTransform& window_;
+  const RasterDraw* draw_ = nullptr;
+  WindowRows rows_;
+};
+
+}  // namespace
+
+struct DepthRaster::Work {
+  explicit Work(int threads) : arena(threads), parts(1) {}
+
+  tbb::task_arena arena;
+  std::vector<ClusterDraw> clusters;
+  std::vector<SetupScratch> parts;
+};
 
 DepthRaster::DepthRaster(const Viewport& size, const RasterOptions& options)
-    : options_(options), window_(Camera{}, size), tiles_(size, options.ids) {}
+    : options_(options),
+      window_(Camera{}, size),
+      rays_(window_, options.setup.coverage),
+      tiles_(size, options.ids),
+      work_(std::make_unique<Work>(std::max(1, options.threads))) {}
+DepthRaster::~DepthRaster() = default;
+DepthRaster::DepthRaster(DepthRaster&&) noexcept = default;
+DepthRaster& DepthRaster::operator=(DepthRaster&&) noexcept = default;
 
 void DepthRaster::begin(const Camera& camera) {
   window_ = WindowTransform(camera, window_.viewport());
+  rays_ = PixelRays(window_, options_.setup.coverage);
   tiles_.clear(static_cast<float>(window_.nearness(camera.lens.far_m)));
+}
+
+std::size_t DepthRaster::draw(std::span<const RasterDraw> draws) {
+  std::vector<ClusterDraw>& clusters = work_->clusters;
+  clusters.clear();
+  find_clusters(ClusterPlanes(window_), draws, clusters);
+  if (options_.threads > 1 && clusters.size() > clusters_at_once) return draw_parallel(draws);
+  SetupScratch& scratch = work_->parts.front();
+  scratch.drawn = 0;
+  Rows rows(window_);
+  const auto flush = [&] {
+    finish_blocks(scratch);
+    draw_blocks({scratch.blocks.data(), scratch.block_count}, tiles_, {});
+    scratch.block_count = 0;
+  };
+  for (const ClusterDraw& cluster : clusters) {
+    const WindowRows& r = rows.of(*cluster.draw);
+    transform_cluster(window_, r, cluster, scratch, options_.setup.coverage, nullptr);
+    set_up_cluster(window_, options_.setup, r, cluster, scratch);
+    if (scratch.block_count > blocks_at_once) flush();
+  }
+  flush();
+  return scratch.drawn;
+}
+
+std::size_t DepthRaster::draw_parallel(std::span<const RasterDraw>) {
+  const std::vector<ClusterDraw>& clusters = work_->clusters;
+  const std::size_t count = (clusters.size() + clusters_at_once - 1) / clusters_at_once;
+  if (work_->parts.size() < count) work_->parts.resize(count);
+  std::vector<SetupScratch>& parts = work_->parts;
+  work_->arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t part) {
+      SetupScratch& scratch = parts[part];
+      scratch.drawn = 0;
+      scratch.block_count = 0;
+      Rows rows(window_);
+      const std::size_t end = std::min(clusters.size(), (part + 1) * clusters_at_once);
+      for (std::size_t i = part * clusters_at_once; i < end; ++i) {
+        const WindowRows& r = rows.of(*clusters[i].draw);
+        transform_cluster(window_, r, clusters[i], scratch, options_.setup.coverage, nullptr);
+        set_up_cluster(window_, options_.setup, r, clusters[i], scratch);
+      }
+      finish_blocks(scratch);
+    });
+    // Every thread has rows of tiles of its own, and draws all triangles into them in order.
+    tbb::parallel_for(0, options_.threads, [&](int index) {
+      for (std::size_t part = 0; part < count; ++part) {
+        const SetupScratch& scratch = parts[part];
+        draw_blocks({scratch.blocks.data(), scratch.block_count}, tiles_,
+                    {index, options_.threads});
+      }
+    });
+  });
+  std::size_t drawn = 0;
+  for (std::size_t part = 0; part < count; ++part) {
+    drawn += parts[part].drawn;
+    parts[part].block_count = 0;
+  }
+  return drawn;
+}
+
+std::size_t DepthRaster::draw_visible(std::span<const RasterDraw> draws,
+                                      std::span<std::uint8_t> hidden) {
+  std::vector<ClusterDraw>& clusters = work_->clusters;
+  clusters.clear();
+  find_clusters(ClusterPlanes(window_), draws, clusters);
+  SetupScratch& scratch = work_->parts.front();
+  scratch.drawn = 0;
+  Rows rows(window_);
+  std::ranges::fill(hidden, std::uint8_t{1});
+  for (const ClusterDraw& cluster : clusters) {
+    const WindowRows& r = rows.of(*cluster.draw);
+    ClusterWindow where;
+    transform_cluster(window_, r, cluster, scratch, options_.setup.coverage, &where);
+    if (where.place == BoxPlace::outside) continue;
+    if (where.place == BoxPlace::inside && hides(where.window)) continue;
+    hidden[static_cast<std::size_t>(cluster.draw - draws.data())] = 0;
+    set_up_cluster(window_, options_.setup, r, cluster, scratch);
+    finish_blocks(scratch);
+    draw_blocks({scratch.blocks.data(), scratch.block_count}, tiles_, {});
+    scratch.block_count = 0;
+  }
+  return scratch.drawn;
 }
 
 float DepthRaster::nearness(int x, int y) const {
@@ -28,66 +147,6 @@ float DepthRaster::nearness(int x, int y) const {
 
 std::uint32_t DepthRaster::id(int x, int y) const {
   return tiles_.id(tiles_.index(x / tile_size, y / tile_size), x % tile_size, y % tile_size);
-}
-
-std::size_t DepthRaster::draw(std::span<const RasterDraw> draws) {
-  std::size_t drawn = 0;
-  for (const RasterDraw& draw_call : draws) {
-    const WindowRows rows = window_.mesh(*draw_call.transform);
-    const bool mirrored = glm::determinant(glm::dmat3(*draw_call.transform)) < 0.0;
-    const auto positions = draw_call.mesh->positions();
-    const auto triangles = draw_call.mesh->triangles();
-    for (std::uint32_t i = 0; i < draw_call.count; ++i) {
-      const glm::uvec3& corners = triangles[draw_call.first + i];
-      std::array<SetupTriangle, max_setup_pieces> pieces;
-      const SetupResult result = set_up_triangle(
-          window_,
-          {rows(positions[corners.x]), rows(positions[corners.y]), rows(positions[corners.z])},
-          draw_call.first_id + i, options_.setup, pieces);
-      const Facing back = mirrored ? Facing::front : Facing::back;
-      if (draw_call.front_only && result.facing == back) continue;
-      for (int piece = 0; piece < result.count; ++piece) {
-        draw(pieces[static_cast<std::size_t>(piece)]);
-      }
-      drawn += result.count > 0 ? 1 : 0;
-    }
-  }
-  return drawn;
-}
-
-void DepthRaster::draw(const SetupTriangle& triangle) {
-  for_each_covered_pixel(triangle, [&](int x, int y, float nearness) {
-    const std::size_t tile = tiles_.index(x / tile_size, y / tile_size);
-    tiles_.store(x / tile_size, y / tile_size);
-    const int at = (y % tile_size) * tile_size + x % tile_size;
-    float& pixel = tiles_.pixels(tile)[at];
-    if (nearness <= pixel) return;
-    pixel = nearness;
-    tiles_.nearest()[tile] = std::max(tiles_.nearest()[tile], nearness);
-    if (tiles_.has_ids()) tiles_.ids(tile)[at] = triangle.id;
-  });
-}
-
-bool DepthRaster::hides(const BoxWindow& box) const {
-  for (int y = box.y0; y < box.y1; ++y) {
-    for (int x = box.x0; x < box.x1; ++x) {
-      if (!(nearness(x, y) > box.nearness)) return false;
-    }
-  }
-  return true;
-}
-
-bool DepthRaster::hides(const Aabb& box) const {
-  BoxWindow place;
-  switch (project_box(window_, box, options_.setup.coverage, place)) {
-    case BoxPlace::outside:
-      return true;
-    case BoxPlace::undecided:
-      return false;
-    case BoxPlace::inside:
-      break;
-  }
-  return hides(place);
 }
 
 std::size_t DepthRaster::bytes() const { return tiles_.bytes(); }
