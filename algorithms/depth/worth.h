@@ -28,8 +28,12 @@ class Worth {
     std::uint64_t hidden_triangles = 0;  // of these; may be estimated
   };
 
-  /// Before every path.
-  void reset() { *this = Worth(); }
+  /// Before every path. Counters go on.
+  void reset() {
+    const std::uint64_t frames_asleep = frames_asleep_;
+    *this = Worth();
+    frames_asleep_ = frames_asleep;
+  }
   /// From ICuller::update().
   void note(const Frame& frame, const Changes& changes);
   /// At the start of cull(): is occlusion to be looked for in this frame? The same answer
@@ -38,7 +42,7 @@ class Worth {
   /// At the end of a cull() that tried.
   void add(const Work& work);
 
-  /// Frames that slept, since reset().
+  /// Frames that slept, ever.
   std::uint64_t frames_asleep() const { return frames_asleep_; }
 
  private:
