@@ -12,16 +12,19 @@ namespace {
 constexpr double margin_px = 1.0 / 32.0;
 
 /// Of a function of points relative to the eye, whose value at the eye is `constant`.
-ColumnView::Row row_of(const glm::dvec3& normal, double constant) {
+ColumnView::Row row_of(const glm::dvec3& normal, double constant, const glm::dvec3& eye) {
   constexpr double rounding = nearness_rounding;
+  constexpr double eye_rounding = 0x1p-46;  // of the eye as two floats
   ColumnView::Row row;
   row.x = static_cast<float>(normal.x);
   row.y = static_cast<float>(normal.y);
   row.z = static_cast<float>(normal.z);
   row.constant = static_cast<float>(constant);
   const glm::dvec3 size = glm::abs(normal);
-  row.reach_error = round_up(rounding * std::max({size.x, size.y, size.z}));
-  row.constant_error = round_up(rounding * std::abs(constant));
+  const double greatest = std::max({size.x, size.y, size.z});
+  row.reach_error = round_up(rounding * greatest);
+  row.constant_error =
+      round_up(rounding * std::abs(constant) + eye_rounding * greatest * absolute_sum(eye));
   return row;
 }
 
@@ -51,18 +54,18 @@ ColumnView::ColumnView(const WindowTransform& window, Coverage coverage)
   // At the eye a perspective camera's window positions, before the division, and depth are 0.
   const double at_eye_x = perspective ? 0.0 : -size_x * lens.left / (lens.right - lens.left);
   const double at_eye_y = perspective ? 0.0 : -size_y * lens.bottom / (lens.top - lens.bottom);
-  window_x = row_of(normal_x, at_eye_x);
-  window_y = row_of(normal_y, at_eye_y);
-  depth = row_of(normal_depth, 0.0);
+  window_x = row_of(normal_x, at_eye_x, eye);
+  window_y = row_of(normal_y, at_eye_y, eye);
+  depth = row_of(normal_depth, 0.0, eye);
   sides[0] = window_x;
   sides[1] = window_y;
   if (perspective) {
-    sides[2] = row_of(size_x * normal_depth - normal_x, 0.0);
-    sides[3] = row_of(size_y * normal_depth - normal_y, 0.0);
+    sides[2] = row_of(size_x * normal_depth - normal_x, 0.0, eye);
+    sides[3] = row_of(size_y * normal_depth - normal_y, 0.0, eye);
     depth_to_px = 2.0F * std::max(width, height);
   } else {
-    sides[2] = row_of(-normal_x, size_x - at_eye_x);
-    sides[3] = row_of(-normal_y, size_y - at_eye_y);
+    sides[2] = row_of(-normal_x, size_x - at_eye_x, eye);
+    sides[3] = row_of(-normal_y, size_y - at_eye_y, eye);
   }
   reach = round_up(margin_px + (coverage == Coverage::centres ? 0.5 : 1.0));
 }
