@@ -37,10 +37,14 @@ CullerInfo describe() {
   info.culls = Culls::hidden;
   info.space = Space::image;
   info.stage = PipelineStage::application;
-  info.parameters = {ParameterSpec::choice(
-      "ground", "covered", {"covered", "assumed"}, ParameterSpec::Stage::build,
-      "below what is covered nothing is hidden, or (assumed) everything, which is right only where "
-      "all that hides stands on the ground and the camera is upright")};
+  info.parameters = {
+      ParameterSpec::choice(
+          "ground", "covered", {"covered", "assumed"}, ParameterSpec::Stage::build,
+          "below what is covered nothing is hidden, or (assumed) everything, which is right only "
+          "where all that hides stands on the ground and the camera is upright"),
+      ParameterSpec::real("occluder_px", 256.0, 0.0, 1e9, "pixels", ParameterSpec::Stage::build,
+                          "objects whose boxes cover fewer pixels hide nothing: less to compute, "
+                          "and less is found hidden")};
   info.cost =
       "O(k log k) for k nodes and objects that no node above them hides, and O(columns of a box) "
       "for each test";
@@ -56,6 +60,7 @@ CullerInfo describe() {
 std::unique_ptr<ICuller> make(const ParameterValues& values) {
   CullerInfo info = describe();
   HorizonOptions options;
+  options.occluder_px = values.real("occluder_px");
   if (values.choice("ground") == "assumed") {
     options.ground = Ground::assumed;
     info.guarantee = Guarantee::approximate;

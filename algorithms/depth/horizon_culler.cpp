@@ -121,7 +121,7 @@ void HorizonCuller::add_object(ObjectId object, const Frame& frame) {
     case BoxPlace::outside:
       return;
     case BoxPlace::undecided:
-      keep(object, frame);
+      keep(object, frame, true);
       return;
     case BoxPlace::inside:
       break;
@@ -139,7 +139,9 @@ void HorizonCuller::look_at_waiting(const Frame& frame) {
     raise_horizon(item.place.nearness);
     if (horizon_.hides(item.place)) continue;
     if (!item.node) {
-      keep(item.id, frame);
+      const double pixels =
+          static_cast<double>(item.place.x1 - item.place.x0) * (item.place.y1 - item.place.y0);
+      keep(item.id, frame, pixels >= options_.occluder_px);
       continue;
     }
     const SpatialNode& node = tree_.structure().nodes()[item.id];
@@ -148,8 +150,9 @@ void HorizonCuller::look_at_waiting(const Frame& frame) {
   }
 }
 
-void HorizonCuller::keep(ObjectId object, const Frame& frame) {
+void HorizonCuller::keep(ObjectId object, const Frame& frame, bool covers) {
   kept_.push_back(object);
+  if (!covers) return;
   const auto add = [&](BoxWindow place) {
     place.nearness = static_cast<float>(place.nearness * error_factor(object));
     frame_covers_.push_back({place, object});

@@ -23,6 +23,8 @@ struct HorizonOptions {
   /// What of an object is joined to the horizon: rectangles inside of its convex parts, or (wrong)
   /// the one around its box.
   enum class Cover { inside, around } cover = Cover::inside;
+  /// Objects whose boxes cover fewer pixels join nothing.
+  double occluder_px = 0.0;
   /// Wrong if not 0: distances are taken by up to this share too short or too long, each object's
   /// by another one that stays the same. Below 1.
   double distance_error = 0.0;
@@ -55,7 +57,7 @@ class HorizonCuller : public ICuller {
   void add_node(SpatialStructure::NodeIndex node, const Frame& frame);
   void add_object(ObjectId object, const Frame& frame);
   void look_at_waiting(const Frame& frame);
-  void keep(ObjectId object, const Frame& frame);
+  void keep(ObjectId object, const Frame& frame, bool covers);
   /// Joins what covers nearer than this.
   void raise_horizon(float nearness);
   double error_factor(ObjectId object) const;
