@@ -25,6 +25,8 @@ class BruteForceRaster {
   std::uint32_t id(int x, int y) const { return ids_[pixel(x, y)]; }
 
  private:
+  std::size_t draw_pieces(const RasterDraw& draw_call, const SetupResult& result,
+                          std::span<const SetupTriangle> pieces);
   std::size_t pixel(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(window_.viewport().width) +
            static_cast<std::size_t>(x);

@@ -74,7 +74,7 @@ std::size_t DepthRaster::draw(std::span<const RasterDraw> draws) {
   for (const ClusterDraw& cluster : clusters) {
     const WindowRows& r = rows.of(*cluster.draw);
     transform_cluster(window_, r, cluster, scratch, options_.setup.coverage, nullptr);
-    set_up_cluster(window_, options_.setup, r, cluster, scratch);
+    set_up_cluster(window_, options_.setup, options_.ids, r, cluster, scratch);
     if (scratch.block_count > blocks_at_once) flush();
   }
   flush();
@@ -96,7 +96,7 @@ std::size_t DepthRaster::draw_parallel(std::span<const RasterDraw>) {
       for (std::size_t i = part * clusters_at_once; i < end; ++i) {
         const WindowRows& r = rows.of(*clusters[i].draw);
         transform_cluster(window_, r, clusters[i], scratch, options_.setup.coverage, nullptr);
-        set_up_cluster(window_, options_.setup, r, clusters[i], scratch);
+        set_up_cluster(window_, options_.setup, options_.ids, r, clusters[i], scratch);
       }
       finish_blocks(scratch);
     });
@@ -133,7 +133,7 @@ std::size_t DepthRaster::draw_visible(std::span<const RasterDraw> draws,
     if (where.place == BoxPlace::outside) continue;
     if (where.place == BoxPlace::inside && hides(where.window)) continue;
     hidden[static_cast<std::size_t>(cluster.draw - draws.data())] = 0;
-    set_up_cluster(window_, options_.setup, r, cluster, scratch);
+    set_up_cluster(window_, options_.setup, options_.ids, r, cluster, scratch);
     finish_blocks(scratch);
     draw_blocks({scratch.blocks.data(), scratch.block_count}, tiles_, {});
     scratch.block_count = 0;

@@ -191,30 +191,47 @@ struct Corner {
 
 class SetUp {
  public:
-  SetUp(const WindowTransform& window, const SetupOptions& options, const ClusterDraw& what,
-        SetupScratch& scratch)
-      : window_(window), options_(options), what_(what), scratch_(scratch) {
+  SetUp(const WindowTransform& window, const SetupOptions& options, bool ids,
+        const ClusterDraw& what, SetupScratch& scratch)
+      : window_(window),
+        options_(options),
+        apart_(ids && options.coverage == Coverage::centres),
+        what_(what),
+        mesh_(*what.draw->mesh),
+        scratch_(scratch) {
     const glm::dmat3 linear(*what.draw->transform);
     // What the signed area of triangles that are left out has.
     if (what.draw->front_only) dropped_ = glm::determinant(linear) < 0.0 ? 1.0F : -1.0F;
-    for (int corner = 0; corner < 3; ++corner) corners_[corner] = what.draw->mesh->corners(corner);
+    for (int corner = 0; corner < 4; ++corner) corners_[corner] = mesh_.corners(corner);
   }
 
   HWY_ATTR void run(const WindowRows& rows) {
-    const std::uint32_t end = what_.first + what_.count;
+    rows_ = &rows;
+    const std::uint32_t first = what_.first;
+    const std::uint32_t end = first + what_.count;
+    std::uint32_t face = mesh_.face_of(first);
+    std::uint32_t last = mesh_.face_of(end - 1) + 1;
+    // Pairs of which one triangle is not to be drawn.
+    if (mesh_.face_triangle(face) != first) {
+      one_by_one(first, 1);
+      if (++face == last) return;
+    }
+    const bool cut = mesh_.is_pair(last - 1) && mesh_.face_triangle(last - 1) + 1 == end;
+    last -= cut ? 1 : 0;
     std::size_t survivors = 0;
-    for (std::uint32_t first = what_.first; first < end; first += int_lanes) {
-      const std::size_t count = std::min<std::size_t>(int_lanes, end - first);
-      if (HWY_UNLIKELY(scratch_.any_beyond) && any_beyond(first, count)) {
+    for (; face < last; face += int_lanes) {
+      const std::size_t count = std::min<std::size_t>(int_lanes, last - face);
+      if (HWY_UNLIKELY(scratch_.any_beyond) && any_beyond(face, count)) {
         // In order, so that the first drawn keeps a tie.
         set_up(survivors);
         survivors = 0;
-        one_by_one(rows, first, static_cast<std::uint32_t>(count));
+        for (std::uint32_t i = face; i < face + count; ++i) one_face(i);
       } else {
-        survivors += look(first, count, scratch_.triangle.data() + survivors);
+        survivors += look(face, count, scratch_.face.data() + survivors);
       }
     }
     set_up(survivors);
+    if (cut) one_by_one(end - 1, 1);
   }
 
  private:
@@ -227,22 +244,26 @@ class SetUp {
     const Ints di;
     const std::int32_t* beyond = scratch_.beyond.data();
     const auto any =
-        hn::Or(gather(beyond, corners_[0] + first),
-               hn::Or(gather(beyond, corners_[1] + first), gather(beyond, corners_[2] + first)));
+        hn::Or(hn::Or(gather(beyond, corners_[0] + first), gather(beyond, corners_[1] + first)),
+               hn::Or(gather(beyond, corners_[2] + first), gather(beyond, corners_[3] + first)));
     return !hn::AllFalse(di, hn::And(hn::Ne(any, hn::Zero(di)), hn::FirstN(di, count)));
   }
 
-  /// Writes the triangles that may face the right way and may hold a pixel's centre; returns how
-  /// many. The signed area is rounded: triangles in doubt are kept.
+  /// Writes the faces that may face the right way and may hold a pixel's centre; returns how many.
+  /// Signed areas are rounded: faces in doubt are kept.
   HWY_ATTR std::size_t look(std::uint32_t first, std::size_t count, std::int32_t* out) const {
     const Ints di;
     const hn::Rebind<float, Ints> df;
-    const auto px = gather(scratch_.snapped_x.data(), corners_[0] + first);
-    const auto py = gather(scratch_.snapped_y.data(), corners_[0] + first);
-    const auto qx = gather(scratch_.snapped_x.data(), corners_[1] + first);
-    const auto qy = gather(scratch_.snapped_y.data(), corners_[1] + first);
-    const auto rx = gather(scratch_.snapped_x.data(), corners_[2] + first);
-    const auto ry = gather(scratch_.snapped_y.data(), corners_[2] + first);
+    const std::int32_t* snapped_x = scratch_.snapped_x.data();
+    const std::int32_t* snapped_y = scratch_.snapped_y.data();
+    const auto px = gather(snapped_x, corners_[0] + first);
+    const auto py = gather(snapped_y, corners_[0] + first);
+    const auto qx = gather(snapped_x, corners_[1] + first);
+    const auto qy = gather(snapped_y, corners_[1] + first);
+    const auto rx = gather(snapped_x, corners_[2] + first);
+    const auto ry = gather(snapped_y, corners_[2] + first);
+    const auto sx = gather(snapped_x, corners_[3] + first);
+    const auto sy = gather(snapped_y, corners_[3] + first);
     const auto first_centre = [&](auto low) HWY_ATTR {
       return hn::ShiftRight<8>(hn::Add(low, hn::Set(di, setup::subpixels / 2 - 1)));
     };
@@ -250,90 +271,109 @@ class SetUp {
       return hn::ShiftRight<8>(hn::Add(high, hn::Set(di, setup::subpixels / 2)));
     };
     const auto zero = hn::Zero(di);
-    const auto x0 = hn::Max(zero, first_centre(hn::Min(px, hn::Min(qx, rx))));
-    const auto y0 = hn::Max(zero, first_centre(hn::Min(py, hn::Min(qy, ry))));
-    const auto x1 =
-        hn::Min(hn::Set(di, window_.viewport().width), after_last(hn::Max(px, hn::Max(qx, rx))));
-    const auto y1 =
-        hn::Min(hn::Set(di, window_.viewport().height), after_last(hn::Max(py, hn::Max(qy, ry))));
+    const auto width = hn::Set(di, window_.viewport().width);
+    const auto height = hn::Set(di, window_.viewport().height);
+    const auto x0 = hn::Max(zero, first_centre(hn::Min(hn::Min(px, qx), hn::Min(rx, sx))));
+    const auto y0 = hn::Max(zero, first_centre(hn::Min(hn::Min(py, qy), hn::Min(ry, sy))));
+    const auto x1 = hn::Min(width, after_last(hn::Max(hn::Max(px, qx), hn::Max(rx, sx))));
+    const auto y1 = hn::Min(height, after_last(hn::Max(hn::Max(py, qy), hn::Max(ry, sy))));
     auto keep = hn::And(hn::And(hn::Lt(x0, x1), hn::Lt(y0, y1)), hn::FirstN(di, count));
     if (dropped_ != 0.0F) {
       const auto difference = [&](auto a, auto b)
                                   HWY_ATTR { return hn::ConvertTo(df, hn::Sub(a, b)); };
-      const auto left = hn::Mul(difference(qx, px), difference(ry, py));
-      const auto right = hn::Mul(difference(qy, py), difference(rx, px));
-      const auto area = hn::Mul(hn::Sub(left, right), hn::Set(df, dropped_));
-      const auto error =
-          hn::Mul(hn::Add(hn::Abs(left), hn::Abs(right)), hn::Set(df, 1.0F / 1'048'576.0F));
-      keep = hn::And(keep, hn::RebindMask(di, hn::Le(area, error)));
+      const auto error_part = hn::Set(df, 1.0F / 1'048'576.0F);
+      const auto drops = hn::Set(df, dropped_);
+      const auto diagonal_x = difference(rx, px), diagonal_y = difference(ry, py);
+      // Of the first triangle, and of the second, which is nothing if there is none.
+      const auto left_0 = hn::Mul(difference(qx, px), diagonal_y);
+      const auto right_0 = hn::Mul(difference(qy, py), diagonal_x);
+      const auto left_1 = hn::Mul(diagonal_x, difference(sy, py));
+      const auto right_1 = hn::Mul(diagonal_y, difference(sx, px));
+      const auto area_0 = hn::Mul(hn::Sub(left_0, right_0), drops);
+      const auto area_1 = hn::Mul(hn::Sub(left_1, right_1), drops);
+      const auto error_0 = hn::Mul(hn::Add(hn::Abs(left_0), hn::Abs(right_0)), error_part);
+      const auto error_1 = hn::Mul(hn::Add(hn::Abs(left_1), hn::Abs(right_1)), error_part);
+      const auto in_doubt = hn::Or(hn::Le(area_0, error_0), hn::Lt(area_1, error_1));
+      keep = hn::And(keep, hn::RebindMask(di, in_doubt));
     }
-    const auto ids = hn::Add(hn::Iota(di, 0), hn::Set(di, static_cast<std::int32_t>(first)));
-    return hn::CompressStore(ids, keep, di, out);
+    const auto faces = hn::Add(hn::Iota(di, 0), hn::Set(di, static_cast<std::int32_t>(first)));
+    return hn::CompressStore(faces, keep, di, out);
   }
 
-  HWY_INLINE Corner corner(const std::uint32_t* corners, hn::Vec<NarrowInts> triangles) const {
+  HWY_INLINE hn::Vec<NarrowInts> of_faces(const std::uint32_t* values,
+                                          hn::Vec<NarrowInts> faces) const {
+    return hn::GatherIndex(NarrowInts(), reinterpret_cast<const std::int32_t*>(values), faces);
+  }
+
+  HWY_INLINE Corner corner(hn::Vec<NarrowInts> vertices) const {
     const Doubles d;
-    const Longs dl;
     const NarrowInts di;
-    const auto narrow =
-        hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(corners), triangles);
-    const auto index = hn::PromoteTo(dl, narrow);
+    const auto index = hn::PromoteTo(Longs(), vertices);
     Corner c;
     c.x = hn::GatherIndex(d, scratch_.x.data(), index);
     c.y = hn::GatherIndex(d, scratch_.y.data(), index);
     c.w = hn::GatherIndex(d, scratch_.w.data(), index);
     c.value = window_.perspective() ? set(1.0)
                                     : hn::Neg(hn::GatherIndex(d, scratch_.depth.data(), index));
-    c.snapped_x = hn::PromoteTo(d, hn::GatherIndex(di, scratch_.snapped_x.data(), narrow));
-    c.snapped_y = hn::PromoteTo(d, hn::GatherIndex(di, scratch_.snapped_y.data(), narrow));
+    c.snapped_x = hn::PromoteTo(d, hn::GatherIndex(di, scratch_.snapped_x.data(), vertices));
+    c.snapped_y = hn::PromoteTo(d, hn::GatherIndex(di, scratch_.snapped_y.data(), vertices));
     return c;
   }
 
   HWY_ATTR void set_up(std::size_t survivors) {
     for (std::size_t i = 0; i < survivors; i += double_lanes) {
-      set_up_some(scratch_.triangle.data() + i, std::min(double_lanes, survivors - i));
+      set_up_some(scratch_.face.data() + i, std::min(double_lanes, survivors - i));
     }
   }
 
-  HWY_ATTR void set_up_some(std::int32_t* triangles, std::size_t count) {
+  /// Of `count` faces, at most as many as there are lanes; as many may be read.
+  HWY_ATTR void set_up_some(const std::int32_t* faces, std::size_t count) {
     const Doubles d;
     const NarrowInts di;
     const auto zero = hn::Zero(d);
-    const auto in_range = hn::FirstN(di, count);
     // Lanes beyond the count repeat the first.
     const auto which =
-        hn::IfThenElse(in_range, hn::LoadU(di, triangles), hn::Set(di, triangles[0]));
-    Corner v[3];
-    for (int i = 0; i < 3; ++i) v[i] = corner(corners_[i], which);
+        hn::IfThenElse(hn::FirstN(di, count), hn::LoadU(di, faces), hn::Set(di, faces[0]));
+    const auto vertex_0 = of_faces(corners_[0], which), vertex_3 = of_faces(corners_[3], which);
+    const auto pair = hn::Ne(hn::PromoteTo(d, vertex_0), hn::PromoteTo(d, vertex_3));
+    Corner v[4] = {corner(vertex_0), corner(of_faces(corners_[1], which)),
+                   corner(of_faces(corners_[2], which)), corner(vertex_3)};
 
-    const auto area = hn::Sub(
-        hn::Mul(hn::Sub(v[1].snapped_x, v[0].snapped_x), hn::Sub(v[2].snapped_y, v[0].snapped_y)),
-        hn::Mul(hn::Sub(v[1].snapped_y, v[0].snapped_y), hn::Sub(v[2].snapped_x, v[0].snapped_x)));
+    const auto area_of = [](const Corner& p, const Corner& q, const Corner& r) HWY_ATTR {
+      return hn::Sub(hn::Mul(hn::Sub(q.snapped_x, p.snapped_x), hn::Sub(r.snapped_y, p.snapped_y)),
+                     hn::Mul(hn::Sub(q.snapped_y, p.snapped_y), hn::Sub(r.snapped_x, p.snapped_x)));
+    };
+    const auto area = area_of(v[0], v[1], v[2]);
+    const auto area_1 = area_of(v[0], v[2], v[3]);
+    const auto area_2 = area_of(v[0], v[1], v[3]);
+    const auto area_3 = area_of(v[1], v[2], v[3]);
+    const auto all_front = hn::Gt(hn::Min(hn::Min(area, area_1), hn::Min(area_2, area_3)), zero);
+    const auto all_back = hn::Lt(hn::Max(hn::Max(area, area_1), hn::Max(area_2, area_3)), zero);
+    // Pairs that are to be taken apart, and what is to be drawn.
+    auto apart = hn::AndNot(hn::Or(all_front, all_back), pair);
     auto keep = hn::Ne(area, zero);
     if (dropped_ != 0.0F) keep = hn::And(keep, hn::Lt(hn::Mul(area, set(dropped_)), zero));
 
     // Pixels, and the anchor.
-    const auto least3 = [](Vector a, Vector b, Vector c)
-                            HWY_ATTR { return hn::Min(a, hn::Min(b, c)); };
-    const auto most3 = [](Vector a, Vector b, Vector c)
-                           HWY_ATTR { return hn::Max(a, hn::Max(b, c)); };
     const auto by_grid = set(1.0 / setup::subpixels);
     const auto half = set(setup::subpixels / 2);
-    const auto first_centre = [&](Vector low) HWY_ATTR {
-      return hn::Floor(hn::Mul(hn::Add(low, hn::Sub(half, set(1.0))), by_grid));
+    const auto first_centre = [&](Vector a, Vector b, Vector c, Vector e) HWY_ATTR {
+      const auto low = hn::Min(hn::Min(a, b), hn::Min(c, e));
+      return hn::Max(zero, hn::Floor(hn::Mul(hn::Add(low, hn::Sub(half, set(1.0))), by_grid)));
     };
-    const auto after_last = [&](Vector high) HWY_ATTR {
-      return hn::Floor(hn::Mul(hn::Add(high, half), by_grid));
+    const auto after_last = [&](Vector a, Vector b, Vector c, Vector e, int size) HWY_ATTR {
+      const auto high = hn::Max(hn::Max(a, b), hn::Max(c, e));
+      return hn::Min(set(size), hn::Floor(hn::Mul(hn::Add(high, half), by_grid)));
     };
-    const auto x0 =
-        hn::Max(zero, first_centre(least3(v[0].snapped_x, v[1].snapped_x, v[2].snapped_x)));
-    const auto y0 =
-        hn::Max(zero, first_centre(least3(v[0].snapped_y, v[1].snapped_y, v[2].snapped_y)));
-    const auto x1 = hn::Min(set(window_.viewport().width),
-                            after_last(most3(v[0].snapped_x, v[1].snapped_x, v[2].snapped_x)));
-    const auto y1 = hn::Min(set(window_.viewport().height),
-                            after_last(most3(v[0].snapped_y, v[1].snapped_y, v[2].snapped_y)));
-    keep = hn::And(keep, hn::And(hn::Lt(x0, x1), hn::Lt(y0, y1)));
+    const auto x0 = first_centre(v[0].snapped_x, v[1].snapped_x, v[2].snapped_x, v[3].snapped_x);
+    const auto y0 = first_centre(v[0].snapped_y, v[1].snapped_y, v[2].snapped_y, v[3].snapped_y);
+    const auto x1 = after_last(v[0].snapped_x, v[1].snapped_x, v[2].snapped_x, v[3].snapped_x,
+                               window_.viewport().width);
+    const auto y1 = after_last(v[0].snapped_y, v[1].snapped_y, v[2].snapped_y, v[3].snapped_y,
+                               window_.viewport().height);
+    const auto holds_pixels = hn::And(hn::Lt(x0, x1), hn::Lt(y0, y1));
+    keep = hn::And(keep, holds_pixels);
+    apart = hn::And(apart, holds_pixels);
     const auto by_tile = set(1.0 / tile_size);
     const auto to_tile = set(tile_size);
     const auto tile_x0 = hn::Floor(hn::Mul(x0, by_tile));
@@ -346,9 +386,9 @@ class SetUp {
     // The plane of nearness.
     const auto pixel_x = hn::Add(anchor_x, set(0.5));
     const auto pixel_y = hn::Add(anchor_y, set(0.5));
-    for (Corner& c : v) {
-      c.x = hn::Sub(c.x, hn::Mul(pixel_x, c.w));
-      c.y = hn::Sub(c.y, hn::Mul(pixel_y, c.w));
+    for (int i = 0; i < 3; ++i) {
+      v[i].x = hn::Sub(v[i].x, hn::Mul(pixel_x, v[i].w));
+      v[i].y = hn::Sub(v[i].y, hn::Mul(pixel_y, v[i].w));
     }
     auto determinant = zero, terms = zero, a = zero, b = zero, value = zero;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -363,14 +403,17 @@ class SetUp {
       b = hn::Add(b, hn::Mul(v[i].value, hn::Sub(hn::Mul(q.w, r.x), hn::Mul(q.x, r.w))));
       value = hn::Add(value, hn::Mul(v[i].value, hn::Sub(hn::Mul(q.x, r.y), hn::Mul(q.y, r.x))));
     }
-    keep = hn::And(
-        keep, hn::And(hn::Gt(hn::Abs(determinant), hn::Mul(set(setup::least_determinant), terms)),
-                      hn::Lt(terms, set(setup::greatest_terms))));
+    const auto seen =
+        hn::And(hn::Gt(hn::Abs(determinant), hn::Mul(set(setup::least_determinant), terms)),
+                hn::Lt(terms, set(setup::greatest_terms)));
     a = hn::Div(a, determinant);
     b = hn::Div(b, determinant);
     value = hn::Div(value, determinant);
-    keep = hn::And(keep, hn::Lt(hn::Add(hn::Add(hn::Abs(a), hn::Abs(b)), hn::Abs(value)),
-                                set(setup::greatest_plane)));
+    const auto size = hn::Add(hn::Add(hn::Abs(a), hn::Abs(b)), hn::Abs(value));
+    const auto good = hn::And(seen, hn::Lt(size, set(setup::greatest_plane)));
+    // The triangles of a pair that is not drawn by the first one's plane may have planes.
+    apart = hn::Or(apart, hn::And(pair, hn::AndNot(good, keep)));
+    keep = hn::AndNot(apart, hn::And(keep, good));
     if (options_.rounding == DepthRounding::lowered) {
       const auto reach_x = hn::Add(hn::Sub(x1, anchor_x), to_tile);
       const auto reach_y = hn::Add(hn::Sub(y1, anchor_y), to_tile);
@@ -383,18 +426,15 @@ class SetUp {
     }
 
     // Edges, counter-clockwise.
-    const auto clockwise = hn::Lt(area, zero);
-    const Vector px = v[0].snapped_x, py = v[0].snapped_y;
-    const Vector qx = hn::IfThenElse(clockwise, v[2].snapped_x, v[1].snapped_x);
-    const Vector qy = hn::IfThenElse(clockwise, v[2].snapped_y, v[1].snapped_y);
-    const Vector rx = hn::IfThenElse(clockwise, v[1].snapped_x, v[2].snapped_x);
-    const Vector ry = hn::IfThenElse(clockwise, v[1].snapped_y, v[2].snapped_y);
-    Vector edge_a[3], edge_b[3], edge_c[3];
-    const auto edge = [&](std::size_t e, Vector fx, Vector fy, Vector tx, Vector ty) HWY_ATTR {
-      const auto ea = hn::Sub(fy, ty);
-      const auto eb = hn::Sub(tx, fx);
-      const auto owns = hn::Or(hn::Gt(ea, zero), hn::And(hn::Eq(ea, zero), hn::Lt(eb, zero)));
-      auto at = hn::Add(hn::Mul(ea, hn::Sub(half, fx)), hn::Mul(eb, hn::Sub(half, fy)));
+    const auto sense = hn::IfThenElse(hn::Lt(area, zero), set(-1.0), set(1.0));
+    Vector edge_a[5], edge_b[5], edge_c[5];
+    const auto edge = [&](std::size_t e, const Corner& from, const Corner& to) HWY_ATTR {
+      const auto ea = hn::Mul(sense, hn::Sub(from.snapped_y, to.snapped_y));
+      const auto eb = hn::Mul(sense, hn::Sub(to.snapped_x, from.snapped_x));
+      const auto level = hn::Eq(ea, zero);
+      const auto owns = hn::Or(hn::Gt(ea, zero), hn::And(level, hn::Lt(eb, zero)));
+      auto at = hn::Add(hn::Mul(ea, hn::Sub(half, from.snapped_x)),
+                        hn::Mul(eb, hn::Sub(half, from.snapped_y)));
       at = hn::Sub(at, hn::IfThenElse(owns, zero, set(1.0)));
       if (options_.coverage == Coverage::whole_pixels) {
         at = hn::Sub(at, hn::Mul(hn::Add(hn::Abs(ea), hn::Abs(eb)), set(setup::subpixels / 2 + 1)));
@@ -404,33 +444,36 @@ class SetUp {
       edge_b[e] = eb;
       edge_c[e] = hn::Add(at, hn::Add(hn::Mul(ea, anchor_x), hn::Mul(eb, anchor_y)));
     };
-    edge(0, px, py, qx, qy);
-    edge(1, qx, qy, rx, ry);
-    edge(2, rx, ry, px, py);
+    edge(0, v[0], v[1]);
+    edge(1, v[1], v[2]);
+    edge(2, v[2], v[3]);
+    edge(3, v[3], v[0]);
+    // A triangle has no fourth edge.
+    edge_c[3] = hn::IfThenElseZero(pair, edge_c[3]);
 
-    // Packed behind what is there. Whole vectors are written: their ends are overwritten later.
-    const auto kept_bits = simd::HWY_NAMESPACE::mask_bits(d, keep) & ((1U << count) - 1);
-    const auto kept = static_cast<std::size_t>(std::popcount(kept_bits));
-    if (kept == 0) return;
-    scratch_.drawn += kept;
-    const auto ids = hn::Add(
-        which, hn::Set(di, static_cast<std::int32_t>(what_.draw->first_id - what_.draw->first)));
-    alignas(64) TriangleBlock fresh;
-    const auto store = [&](Vector value_of, std::array<double, most_lanes>& to)
-                           HWY_ATTR { hn::Store(value_of, d, to.data()); };
-    const auto store_int = [&](Vector value_of, std::array<std::int32_t, most_lanes>& to)
-                               HWY_ATTR { hn::Store(hn::DemoteTo(di, value_of), di, to.data()); };
-    const auto store_float = [&](Vector value_of, std::array<float, most_lanes>& to) HWY_ATTR {
-      const NarrowFloats df;
-      hn::Store(hn::DemoteTo(df, value_of), df, to.data());
-    };
-    const bool whole = kept == most_lanes && scratch_.lane == 0;
+    const std::uint32_t valid = (1U << count) - 1;
+    const std::uint32_t kept = simd::HWY_NAMESPACE::mask_bits(d, keep) & valid;
+    const std::uint32_t taken_apart = simd::HWY_NAMESPACE::mask_bits(d, apart) & valid;
+    if ((kept | taken_apart) == 0) return;
+    const std::uint32_t pairs = simd::HWY_NAMESPACE::mask_bits(d, pair);
+    const auto offset = static_cast<std::int32_t>(what_.draw->first_id - what_.draw->first);
+    const auto ids = hn::Add(of_faces(mesh_.face_triangles(), which), hn::Set(di, offset));
+    TriangleBlock fresh;
+    const bool whole =
+        kept == (1U << most_lanes) - 1 && scratch_.lane == 0 && !(apart_ && pairs != 0);
     TriangleBlock& to = whole ? next_block() : fresh;
-    for (std::size_t e = 0; e < 3; ++e) {
-      store(edge_a[e], to.a[e]);
-      store(edge_b[e], to.b[e]);
-      store(edge_c[e], to.c[e]);
+    for (std::size_t e = 0; e < SetupTriangle::edge_count; ++e) {
+      hn::Store(edge_a[e], d, to.a[e].data());
+      hn::Store(edge_b[e], d, to.b[e].data());
+      hn::Store(edge_c[e], d, to.c[e].data());
     }
+    const auto store_int =
+        [&](Vector value_of, std::array<std::int32_t, most_lanes>& array)
+            HWY_ATTR { hn::Store(hn::DemoteTo(di, value_of), di, array.data()); };
+    const auto store_float = [&](Vector value_of, std::array<float, most_lanes>& array) HWY_ATTR {
+      const NarrowFloats df;
+      hn::Store(hn::DemoteTo(df, value_of), df, array.data());
+    };
     store_int(tile_x0, to.x0);
     store_int(tile_y0, to.y0);
     store_int(tile_x1, to.x1);
@@ -439,10 +482,50 @@ class SetUp {
     store_float(a, to.step_x);
     store_float(b, to.step_y);
     hn::Store(ids, di, reinterpret_cast<std::int32_t*>(to.id.data()));
+    scratch_.drawn += static_cast<std::size_t>(std::popcount(kept) + std::popcount(kept & pairs));
     if (whole) return;
-    for (std::uint32_t rest = kept_bits; rest != 0; rest &= rest - 1) {
-      copy_lane(fresh, static_cast<std::size_t>(std::countr_zero(rest)));
+    Diagonal diagonal;
+    if (apart_) {
+      edge(4, v[0], v[2]);
+      hn::Store(edge_a[4], d, diagonal.a.data());
+      hn::Store(edge_b[4], d, diagonal.b.data());
+      hn::Store(edge_c[4], d, diagonal.c.data());
     }
+    for (std::uint32_t rest = kept | taken_apart; rest != 0; rest &= rest - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+      if ((taken_apart >> i & 1U) != 0) {
+        one_by_one(mesh_.face_triangle(static_cast<std::uint32_t>(faces[i])), 2);
+      } else if (apart_ && (pairs >> i & 1U) != 0) {
+        add_triangles(fresh, diagonal, i);
+      } else {
+        add_lane(fresh, i);
+      }
+    }
+  }
+
+  /// From corner 0 to corner 2 of pairs, as an edge of their second triangles.
+  struct Diagonal {
+    alignas(64) std::array<double, most_lanes> a, b, c;
+  };
+
+  /// The two triangles of a pair, with ids of their own.
+  void add_triangles(TriangleBlock& pair, const Diagonal& diagonal, std::size_t i) const {
+    const auto edge = [&](std::size_t e, double a, double b, double c) {
+      pair.a[e][i] = a;
+      pair.b[e][i] = b;
+      pair.c[e][i] = c;
+    };
+    const std::array<double, 3> third{pair.a[2][i], pair.b[2][i], pair.c[2][i]};
+    const std::array<double, 3> fourth{pair.a[3][i], pair.b[3][i], pair.c[3][i]};
+    // The first has what the second has not: values are whole numbers, so -x - 1 >= 0 if x < 0.
+    edge(2, -diagonal.a[i], -diagonal.b[i], -diagonal.c[i] - 1.0);
+    edge(3, 0.0, 0.0, 0.0);
+    add_lane(pair, i);
+    edge(0, diagonal.a[i], diagonal.b[i], diagonal.c[i]);
+    edge(1, third[0], third[1], third[2]);
+    edge(2, fourth[0], fourth[1], fourth[2]);
+    ++pair.id[i];
+    add_lane(pair, i);
   }
 
   TriangleBlock& next_block() const {
@@ -460,10 +543,10 @@ class SetUp {
     return block;
   }
 
-  void copy_lane(const TriangleBlock& from, std::size_t i) const {
+  void add_lane(const TriangleBlock& from, std::size_t i) const {
     std::size_t lane = 0;
     TriangleBlock& to = next_lane(lane);
-    for (std::size_t e = 0; e < 3; ++e) {
+    for (std::size_t e = 0; e < SetupTriangle::edge_count; ++e) {
       to.a[e][lane] = from.a[e][i];
       to.b[e][lane] = from.b[e][i];
       to.c[e][lane] = from.c[e][i];
@@ -478,42 +561,58 @@ class SetUp {
     to.id[lane] = from.id[i];
   }
 
-  void one_by_one(const WindowRows& rows, std::uint32_t first, std::uint32_t count) const {
-    const RasterMesh& mesh = *what_.draw->mesh;
-    const auto positions = mesh.positions();
+  /// What set_up_triangle makes of triangles of the mesh.
+  void one_by_one(std::uint32_t first, std::uint32_t count) const {
+    const auto positions = mesh_.positions();
+    const Facing dropped = dropped_ < 0.0F ? Facing::back : Facing::front;
     for (std::uint32_t i = first; i < first + count; ++i) {
-      // Nothing is left of what lies wholly beyond one plane.
-      if ((scratch_.beyond[corners_[0][i]] & scratch_.beyond[corners_[1][i]] &
-           scratch_.beyond[corners_[2][i]]) != 0) {
-        continue;
-      }
-      const glm::uvec3& t = mesh.triangles()[i];
+      const glm::uvec3& t = mesh_.triangles()[i];
+      const std::array<WindowPoint, 3> points{(*rows_)(positions[t.x]), (*rows_)(positions[t.y]),
+                                              (*rows_)(positions[t.z])};
       std::array<SetupTriangle, max_setup_pieces> pieces;
       const SetupResult result = set_up_triangle(
-          window_, {rows(positions[t.x]), rows(positions[t.y]), rows(positions[t.z])},
-          what_.draw->first_id + (i - what_.draw->first), options_, pieces);
-      const Facing dropped = dropped_ < 0.0F ? Facing::back : Facing::front;
-      if (dropped_ != 0.0F && result.facing == dropped) continue;
+          window_, points, what_.draw->first_id + (i - what_.draw->first), options_, pieces);
+      if (result.count == 0 || (dropped_ != 0.0F && result.facing == dropped)) continue;
       for (int piece = 0; piece < result.count; ++piece) {
         std::size_t lane = 0;
         TriangleBlock& block = next_lane(lane);
         block.set_lane(lane, pieces[static_cast<std::size_t>(piece)]);
       }
-      scratch_.drawn += result.count > 0 ? 1 : 0;
+      ++scratch_.drawn;
+    }
+  }
+
+  /// A face of a cluster that has something beyond.
+  HWY_ATTR void one_face(std::uint32_t face) {
+    std::int32_t all = -1, any = 0;
+    for (const std::uint32_t* corners : corners_) {
+      all &= scratch_.beyond[corners[face]];
+      any |= scratch_.beyond[corners[face]];
+    }
+    // Nothing is left of what lies wholly beyond one plane.
+    if (all != 0) return;
+    if (any == 0) {
+      std::array<std::int32_t, most_lanes> faces{static_cast<std::int32_t>(face)};
+      set_up_some(faces.data(), 1);
+    } else {
+      one_by_one(mesh_.face_triangle(face), mesh_.is_pair(face) ? 2 : 1);
     }
   }
 
   const WindowTransform& window_;
   const SetupOptions& options_;
+  bool apart_;  // triangles of pairs need ids of their own
   const ClusterDraw& what_;
+  const RasterMesh& mesh_;
   SetupScratch& scratch_;
+  const WindowRows* rows_ = nullptr;
   float dropped_ = 0.0F;
-  const std::uint32_t* corners_[3];
+  const std::uint32_t* corners_[4];
 };
 
-HWY_ATTR void set_up(const WindowTransform& window, const SetupOptions& options,
+HWY_ATTR void set_up(const WindowTransform& window, const SetupOptions& options, bool ids,
                      const WindowRows& rows, const ClusterDraw& cluster, SetupScratch& scratch) {
-  SetUp(window, options, cluster, scratch).run(rows);
+  SetUp(window, options, ids, cluster, scratch).run(rows);
 }
 
 }  // namespace
@@ -567,9 +666,9 @@ void transform_cluster(const WindowTransform& window, const WindowRows& rows,
   HWY_DYNAMIC_DISPATCH(transform)(window, rows, cluster, scratch, coverage, where);
 }
 
-void set_up_cluster(const WindowTransform& window, const SetupOptions& options,
+void set_up_cluster(const WindowTransform& window, const SetupOptions& options, bool ids,
                     const WindowRows& rows, const ClusterDraw& cluster, SetupScratch& scratch) {
-  HWY_DYNAMIC_DISPATCH(set_up)(window, options, rows, cluster, scratch);
+  HWY_DYNAMIC_DISPATCH(set_up)(window, options, ids, rows, cluster, scratch);
 }
 
 void finish_blocks(SetupScratch& scratch) {

@@ -1,10 +1,11 @@
-// The set-up of many triangles at once: what set_up_triangle does, bit for bit, with SIMD.
+// The set-up of many triangles at once: what set_up_triangle and set_up_pair do,
+// bit for bit, with SIMD.
 //
 // Idea: clusters outside of the window are dropped by their boxes; vertices are transformed once a
 //   cluster, in double; a first look at the snapped corners drops triangles that face away or hold
 //   no pixel's centre; the survivors, packed together, get edges and planes. Triangles that need
 //   clipping go through set_up_triangle.
-// Guarantee: the same triangles as set_up_triangle gives, in the same order, with the same bits.
+// Guarantee: the same triangles as they give, in the same order, with the same bits.
 // Cost: about 20 operations a vertex, and 10 (dropped) to 50 (kept) a triangle.
 #pragma once
 
@@ -42,7 +43,7 @@ struct SetupScratch {
   // What a vertex lies beyond of (bits): the near plane, and what positions are clipped to.
   alignas(64) std::array<std::int32_t, vertices> beyond;
   bool any_beyond = false;
-  alignas(64) std::array<std::int32_t, survivors> triangle;
+  alignas(64) std::array<std::int32_t, survivors> face;
 
   std::vector<TriangleBlock> blocks;  // written: the first block_count
   std::size_t block_count = 0;
@@ -75,8 +76,9 @@ void transform_cluster(const WindowTransform& window, const WindowRows& rows,
                        ClusterWindow* where);
 
 /// Sets up the triangles of the cluster that was transformed last and appends them to the
-/// scratch's blocks.
-void set_up_cluster(const WindowTransform& window, const SetupOptions& options,
+/// scratch's blocks. With `ids` every triangle is a lane of its own, else pairs are one
+/// quadrilateral.
+void set_up_cluster(const WindowTransform& window, const SetupOptions& options, bool ids,
                     const WindowRows& rows, const ClusterDraw& cluster, SetupScratch& scratch);
 
 /// Clears the lanes of the last block that are not used, so that all blocks may be read.

@@ -29,6 +29,7 @@ using Ints = hn::Rebind<std::int32_t, Floats>;
 using Ids = hn::Rebind<std::uint32_t, Floats>;
 constexpr int lanes = HWY_MIN(HWY_LANES(float), 16);
 constexpr int vectors = tile_pixels / lanes;
+constexpr std::size_t edges = SetupTriangle::edge_count;
 
 /// Edge functions are clamped to this before they become 32-bit: within a tile they change by less
 /// than 2^28.
@@ -44,6 +45,23 @@ alignas(64) constexpr auto pixel_rows = [] {
   for (int i = 0; i < tile_pixels; ++i) y[static_cast<std::size_t>(i)] = i / tile_size;
   return y;
 }();
+
+alignas(64) constexpr auto pixel_dx = [] {
+  std::array<float, tile_pixels> x{};
+  for (int i = 0; i < tile_pixels; ++i) {
+    x[static_cast<std::size_t>(i)] = static_cast<float>(i % tile_size);
+  }
+  return x;
+}();
+alignas(64) constexpr auto pixel_dy = [] {
+  std::array<float, tile_pixels> y{};
+  for (int i = 0; i < tile_pixels; ++i) {
+    y[static_cast<std::size_t>(i)] = static_cast<float>(i / tile_size);
+  }
+  return y;
+}();
+/// Vectors that make up whole rows; all later ones have their columns.
+constexpr int first_vectors = lanes < tile_size ? tile_size / lanes : 1;
 
 /// Draws into the tiles of one store; `with_ids` is the store's.
 template <bool with_ids>
@@ -62,110 +80,145 @@ class TilePainter {
         odd_y_(tiles.height() % tile_size == 0 ? tiles.tiles_y() : tiles.tiles_y() - 1) {}
 
   HWY_ATTR void draw(const TriangleBlock& block, std::size_t lane, const TileRows& rows) {
-    const Doubles d;
     const Headers df;
     const int x0 = block.x0[lane], x1 = block.x1[lane];
     const int y0 = block.y0[lane], y1 = block.y1[lane];
     if (y0 >= y1) return;
     Triangle t;
-    hn::Vec<Doubles> across[3], along_low[3];  // from tile to tile
-    double up[3], greatest_c[3];
-    const auto columns = hn::Iota(d, 0.0);
-    hn::Vec<Doubles> to_greatest[3];
-    for (std::size_t e = 0; e < 3; ++e) {
-      const double a = block.a[e][lane], b = block.b[e][lane], c = block.c[e][lane];
-      t.edge_a[e] = static_cast<std::int32_t>(a);
-      t.edge_b[e] = static_cast<std::int32_t>(b);
-      constexpr double last = tile_size - 1;
-      const double least = std::min(0.0, last * a) + std::min(0.0, last * b);
-      const double most = std::max(0.0, last * a) + std::max(0.0, last * b);
-      along_low[e] = hn::MulAdd(columns, hn::Set(d, tile_size * a), hn::Set(d, c + least));
-      to_greatest[e] = hn::Set(d, most - least);
-      across[e] = hn::Set(d, tile_size * a * row_lanes);
-      t.to_corner[e] = -least;
-      up[e] = tile_size * b;
-      greatest_c[e] = 0.0;
-    }
-    static_cast<void>(greatest_c);
-    t.nearness = block.nearness[lane];
     t.step_x = block.step_x[lane];
     t.step_y = block.step_y[lane];
     t.id = block.id[lane];
+    t.ready = false;
     constexpr float last = tile_size - 1;
     // Rounding is monotone: these are what the pixels of a tile have at least and at most.
-    t.low = std::min(0.0F, t.step_x * last) + std::min(0.0F, t.step_y * last);
-    t.high = std::max(0.0F, t.step_x * last) + std::max(0.0F, t.step_y * last);
-    const auto low = hn::Set(df, t.low), high = hn::Set(df, t.high);
-    const auto step_x = hn::Set(df, t.step_x), step_y = hn::Set(df, t.step_y);
-    const auto dx0 = hn::Mul(hn::Iota(df, 0.0F), hn::Set(df, static_cast<float>(tile_size)));
+    const float low = std::min(0.0F, t.step_x * last) + std::min(0.0F, t.step_y * last);
+    const float high = std::max(0.0F, t.step_x * last) + std::max(0.0F, t.step_y * last);
+    const auto step_x = hn::Set(df, t.step_x);
+    const auto value_0 = hn::Set(df, block.nearness[lane]);
+    const auto highs = hn::Set(df, high);
+    const auto dx_0 = hn::Mul(hn::Iota(df, 0.0F), hn::Set(df, static_cast<float>(tile_size)));
+    const auto value_left = hn::Add(value_0, hn::Mul(step_x, dx_0));
     for (int y = y0; y < y1; ++y) {
       if (rows.count > 1 && (y / 2) % rows.count != rows.index) continue;
-      const int dy = y - y0;
-      const auto value_up = hn::Mul(step_y, hn::Set(df, static_cast<float>(dy * tile_size)));
-      hn::Vec<Doubles> edge[3];
-      for (std::size_t e = 0; e < 3; ++e) {
-        edge[e] = hn::Add(along_low[e], hn::Set(d, up[e] * dy));
-      }
-      const std::size_t row = tiles_.index(0, y);
-      for (int x = x0; x < x1; x += row_lanes) {
-        const std::size_t at = row + static_cast<std::size_t>(x);
-        const auto dx = hn::Add(dx0, hn::Set(df, static_cast<float>((x - x0) * tile_size)));
-        const auto value = hn::Add(hn::Add(hn::Set(df, t.nearness), hn::Mul(step_x, dx)), value_up);
-        const auto most = hn::Add(value, high);
-        const auto nearer = hn::Gt(most, hn::LoadU(df, farthest_ + at));
-        const auto greatest =
-            hn::Min(hn::Min(hn::Add(edge[0], to_greatest[0]), hn::Add(edge[1], to_greatest[1])),
-                    hn::Add(edge[2], to_greatest[2]));
-        const auto touched = hn::Ge(greatest, hn::Zero(d));
-        std::uint32_t open = bits(d, touched) & bits(df, nearer);
+      const auto value_up = hn::Set(df, t.step_y * static_cast<float>((y - y0) * tile_size));
+      auto value = hn::Add(value_left, value_up);
+      std::size_t at = tiles_.index(x0, y);
+      for (int x = x0;;) {
+        const auto most = hn::Add(value, highs);
+        std::uint32_t open = bits(df, hn::Gt(most, hn::LoadU(df, farthest_ + at)));
         if (x1 - x < row_lanes) open &= (1U << (x1 - x)) - 1;
         if (open != 0) {
-          const auto inside = hn::Ge(hn::Min(hn::Min(edge[0], edge[1]), edge[2]), hn::Zero(d));
-          const std::uint32_t whole = bits(d, inside) & open;
-          std::uint32_t partial = open & ~whole;
-          if (whole != 0) {
-            const auto least = hn::Add(value, low);
-            const auto before = hn::LoadU(df, nearest_ + at);
-            const std::uint32_t replaced =
-                whole & bits(df, with_ids ? hn::Gt(least, before) : hn::Ge(least, before));
-            if (replaced != 0) {
-              replace(at, replaced, least, most, value, t);
-            }
-            partial |= whole & ~replaced;
-          }
-          if (partial != 0) {
-            alignas(64) std::int32_t corner[3][8];
-            alignas(64) float values[8], mosts[8];
-            const hn::Rebind<std::int32_t, Doubles> di;
-            for (std::size_t e = 0; e < 3; ++e) {
-              const auto exact = hn::Add(edge[e], hn::Set(d, t.to_corner[e]));
-              const auto clamped =
-                  hn::Min(hn::Max(exact, hn::Set(d, -greatest_edge)), hn::Set(d, greatest_edge));
-              hn::Store(hn::DemoteTo(di, clamped), di, corner[e]);
-            }
-            hn::Store(value, df, values);
-            hn::Store(most, df, mosts);
-            for (; partial != 0; partial &= partial - 1) {
-              const int i = std::countr_zero(partial);
-              if (HWY_UNLIKELY(x + i >= odd_x_ || y >= odd_y_)) tiles_.store(x + i, y);
-              paint(at + static_cast<std::size_t>(i), t, corner[0][i], corner[1][i], corner[2][i],
-                    values[i], mosts[i]);
-            }
-          }
+          if (!t.ready) prepare(block, lane, t);
+          draw_row(block, lane, t, x, y, at, x - x0, y - y0, open, value, most, low);
         }
-        for (std::size_t e = 0; e < 3; ++e) edge[e] = hn::Add(edge[e], across[e]);
+        x += row_lanes;
+        if (x >= x1) break;
+        at += row_lanes;
+        const auto dx = hn::Add(dx_0, hn::Set(df, static_cast<float>((x - x0) * tile_size)));
+        value = hn::Add(hn::Add(value_0, hn::Mul(step_x, dx)), value_up);
       }
     }
   }
 
  private:
   struct Triangle {
-    std::int32_t edge_a[3], edge_b[3];
-    double to_corner[3];  // from the least value in a tile to that at its lower left pixel
-    float nearness, step_x, step_y;
-    float low, high;  // of the pixels of a tile, from the lower left one's
+    // Least value of each edge function in the tiles of a row, from the anchor's.
+    hn::Vec<Doubles> along[edges];
+    double to_most[edges];    // from the least value in a tile to the greatest
+    double to_corner[edges];  // and to that at its lower left pixel
+    // From the lower left pixel of a tile to its others: edge functions and nearness.
+    hn::Vec<Ints> edge[edges][vectors];
+    hn::Vec<Floats> nearness[vectors];
+    float step_x, step_y;
     std::uint32_t id;
+    bool ready;
   };
+
+  HWY_INLINE void prepare(const TriangleBlock& block, std::size_t lane, Triangle& t) {
+    const Doubles d;
+    const Floats df;
+    const Ints di;
+    t.ready = true;
+    const auto columns = hn::Iota(d, 0.0);
+    for (std::size_t e = 0; e < edges; ++e) {
+      const double a = block.a[e][lane], b = block.b[e][lane], c = block.c[e][lane];
+      constexpr double last = tile_size - 1;
+      const double least = last * (std::min(0.0, a) + std::min(0.0, b));
+      const double most = last * (std::max(0.0, a) + std::max(0.0, b));
+      t.along[e] = hn::MulAdd(columns, hn::Set(d, tile_size * a), hn::Set(d, c + least));
+      t.to_most[e] = most - least;
+      t.to_corner[e] = -least;
+      const auto edge_a = hn::Set(di, static_cast<std::int32_t>(a));
+      const auto edge_b = hn::Set(di, static_cast<std::int32_t>(b));
+      // Vectors repeat their columns; from one row to the next is one step.
+      for (int i = 0; i < vectors; ++i) {
+        if (i < first_vectors) {
+          t.edge[e][i] = hn::Add(hn::Mul(hn::Load(di, pixel_columns.data() + i * lanes), edge_a),
+                                 hn::Mul(hn::Load(di, pixel_rows.data() + i * lanes), edge_b));
+        } else {
+          t.edge[e][i] =
+              hn::Add(t.edge[e][i - first_vectors],
+                      hn::Set(di, static_cast<std::int32_t>(b) * (first_vectors * lanes / 8)));
+        }
+      }
+    }
+    for (int i = 0; i < vectors; ++i) {
+      const auto dx = hn::Load(df, pixel_dx.data() + i * lanes);
+      const auto dy = hn::Load(df, pixel_dy.data() + i * lanes);
+      t.nearness[i] =
+          hn::Add(hn::Mul(hn::Set(df, t.step_x), dx), hn::Mul(hn::Set(df, t.step_y), dy));
+    }
+  }
+
+  /// The tiles x … of a row whose bits are set in `open`: the triangle may be nearer there.
+  /// dx and dy are how many tiles the first is from the anchor's.
+  HWY_INLINE void draw_row(const TriangleBlock& block, std::size_t lane, const Triangle& t, int x,
+                           int y, std::size_t at, int dx, int dy, std::uint32_t open,
+                           hn::Vec<Headers> value, hn::Vec<Headers> most, float low) {
+    const Doubles d;
+    const Headers df;
+    const hn::Rebind<std::int32_t, Doubles> di;
+    hn::Vec<Doubles> edge[edges];
+    for (std::size_t e = 0; e < edges; ++e) {
+      // Whole numbers below 2^53: exact.
+      const double from_anchor =
+          (block.a[e][lane] * dx + block.b[e][lane] * dy) * static_cast<double>(tile_size);
+      edge[e] = hn::Add(t.along[e], hn::Set(d, from_anchor));
+    }
+    const auto greatest = hn::Min(hn::Min(hn::Add(edge[0], hn::Set(d, t.to_most[0])),
+                                          hn::Add(edge[1], hn::Set(d, t.to_most[1]))),
+                                  hn::Min(hn::Add(edge[2], hn::Set(d, t.to_most[2])),
+                                          hn::Add(edge[3], hn::Set(d, t.to_most[3]))));
+    const auto smallest = hn::Min(hn::Min(edge[0], edge[1]), hn::Min(edge[2], edge[3]));
+    open &= bits(d, hn::Ge(greatest, hn::Zero(d)));
+    const std::uint32_t whole = bits(d, hn::Ge(smallest, hn::Zero(d))) & open;
+    std::uint32_t partial = open & ~whole;
+    if (whole != 0) {
+      const auto least = hn::Add(value, hn::Set(df, low));
+      const auto before = hn::LoadU(df, nearest_ + at);
+      const std::uint32_t replaced =
+          whole & bits(df, with_ids ? hn::Gt(least, before) : hn::Ge(least, before));
+      if (replaced != 0) replace(at, replaced, least, most, value, t);
+      partial |= whole & ~replaced;
+    }
+    if (partial == 0) return;
+    alignas(64) std::int32_t corner[edges][8];
+    alignas(64) float values[8], mosts[8];
+    for (std::size_t e = 0; e < edges; ++e) {
+      const auto exact = hn::Add(edge[e], hn::Set(d, t.to_corner[e]));
+      const auto clamped =
+          hn::Min(hn::Max(exact, hn::Set(d, -greatest_edge)), hn::Set(d, greatest_edge));
+      hn::Store(hn::DemoteTo(di, clamped), di, corner[e]);
+    }
+    hn::Store(value, df, values);
+    hn::Store(most, df, mosts);
+    for (; partial != 0; partial &= partial - 1) {
+      const int i = std::countr_zero(partial);
+      if (HWY_UNLIKELY(x + i >= odd_x_ || y >= odd_y_)) tiles_.store(x + i, y);
+      paint(at + static_cast<std::size_t>(i), t,
+            {corner[0][i], corner[1][i], corner[2][i], corner[3][i]}, values[i], mosts[i]);
+    }
+  }
 
   template <class Lanes>
   static HWY_INLINE std::uint32_t bits(Lanes d, hn::Mask<Lanes> mask) {
@@ -188,41 +241,43 @@ class TilePainter {
     if (with_ids) hn::BlendedStore(hn::Set(du, t.id), mask_u, du, tiles_.plane_id() + at);
   }
 
-  /// Compares the covered pixels of one tile; c0 … c2 are the edge functions at its lower left
+  /// Compares the covered pixels of one tile; `corner` are the edge functions at its lower left
   /// pixel, `value` is the nearness there, and none in the tile is above `most`.
-  HWY_INLINE void paint(std::size_t tile, const Triangle& t, std::int32_t c0, std::int32_t c1,
-                        std::int32_t c2, float value, float most) {
+  HWY_INLINE void paint(std::size_t tile, const Triangle& t,
+                        const std::array<std::int32_t, edges>& corner, float value, float most) {
     const Floats df;
     const Ints di;
     const Ids du;
     float* const pixels = tiles_.pixels(tile);
     std::uint32_t* const ids = with_ids ? tiles_.ids(tile) : nullptr;
     const bool stored = stored_[tile] != 0;
-    const auto old_value = hn::Set(df, value_[tile]);
-    const auto old_x = hn::Set(df, step_x_[tile]), old_y = hn::Set(df, step_y_[tile]);
-    const auto new_value = hn::Set(df, value);
-    const auto new_x = hn::Set(df, t.step_x), new_y = hn::Set(df, t.step_y);
     hn::Vec<Floats> after[vectors];
+    if (stored) {
+      for (int i = 0; i < vectors; ++i) after[i] = hn::Load(df, pixels + i * lanes);
+    } else {
+      const auto old_value = hn::Set(df, value_[tile]);
+      const auto old_x = hn::Set(df, step_x_[tile]), old_y = hn::Set(df, step_y_[tile]);
+      for (int i = 0; i < vectors; ++i) {
+        const auto dx = hn::Load(df, pixel_dx.data() + i * lanes);
+        const auto dy = hn::Load(df, pixel_dy.data() + i * lanes);
+        after[i] = hn::Add(old_value, hn::Add(hn::Mul(old_x, dx), hn::Mul(old_y, dy)));
+      }
+    }
+    const auto new_value = hn::Set(df, value);
+    const auto edge_0 = hn::Set(di, corner[0]), edge_1 = hn::Set(di, corner[1]);
+    const auto edge_2 = hn::Set(di, corner[2]), edge_3 = hn::Set(di, corner[3]);
     auto any = hn::MaskFromVec(hn::Zero(df));
     auto farthest = hn::Set(df, INFINITY);
     hn::Mask<Floats> taken[vectors];
     for (int i = 0; i < vectors; ++i) {
-      const auto column = hn::Load(di, pixel_columns.data() + i * lanes);
-      const auto line = hn::Load(di, pixel_rows.data() + i * lanes);
-      const auto edge = [&](std::size_t e, std::int32_t c) HWY_ATTR {
-        return hn::Add(hn::Set(di, c), hn::Add(hn::Mul(column, hn::Set(di, t.edge_a[e])),
-                                               hn::Mul(line, hn::Set(di, t.edge_b[e]))));
-      };
-      const auto sign = hn::Or(edge(0, c0), hn::Or(edge(1, c1), edge(2, c2)));
+      const auto sign =
+          hn::Or(hn::Or(hn::Add(edge_0, t.edge[0][i]), hn::Add(edge_1, t.edge[1][i])),
+                 hn::Or(hn::Add(edge_2, t.edge[2][i]), hn::Add(edge_3, t.edge[3][i])));
       const auto covered = hn::RebindMask(df, hn::Gt(sign, hn::Set(di, -1)));
-      const auto dx = hn::ConvertTo(df, column), dy = hn::ConvertTo(df, line);
-      const auto fresh = hn::Add(new_value, hn::Add(hn::Mul(new_x, dx), hn::Mul(new_y, dy)));
-      const auto before = stored
-                              ? hn::Load(df, pixels + i * lanes)
-                              : hn::Add(old_value, hn::Add(hn::Mul(old_x, dx), hn::Mul(old_y, dy)));
-      taken[i] = hn::And(covered, hn::Gt(fresh, before));
+      const auto fresh = hn::Add(new_value, t.nearness[i]);
+      taken[i] = hn::And(covered, hn::Gt(fresh, after[i]));
       any = hn::Or(any, taken[i]);
-      after[i] = hn::IfThenElse(taken[i], fresh, before);
+      after[i] = hn::IfThenElse(taken[i], fresh, after[i]);
       farthest = hn::Min(farthest, after[i]);
     }
     if (hn::AllFalse(df, any)) return;

@@ -1,4 +1,5 @@
-// Triangles that are set up, eight at a time, as the kernels that scan-convert tiles read them.
+// Triangles and quadrilaterals that are set up, eight at a time, as the kernels that scan-convert
+// tiles read them.
 #pragma once
 
 #include <array>
@@ -13,9 +14,9 @@ namespace vislab {
 struct TriangleBlock {
   static constexpr std::size_t lanes = 8;
 
-  alignas(64) std::array<std::array<double, lanes>, 3> c;
-  alignas(64) std::array<std::array<double, lanes>, 3> a;
-  alignas(64) std::array<std::array<double, lanes>, 3> b;
+  alignas(64) std::array<std::array<double, lanes>, SetupTriangle::edge_count> c;
+  alignas(64) std::array<std::array<double, lanes>, SetupTriangle::edge_count> a;
+  alignas(64) std::array<std::array<double, lanes>, SetupTriangle::edge_count> b;
   // Tiles that may be covered: [x0, x1) x [y0, y1). None, for lanes without a triangle.
   alignas(64) std::array<std::int32_t, lanes> x0, y0, x1, y1;
   // At the centre of the anchor, and steps by pixel.
@@ -27,7 +28,7 @@ struct TriangleBlock {
     id[lane] = 0;
   }
   void set_lane(std::size_t lane, const SetupTriangle& triangle) {
-    for (std::size_t e = 0; e < 3; ++e) {
+    for (std::size_t e = 0; e < c.size(); ++e) {
       const WindowEdge& edge = triangle.edges[e];
       c[e][lane] = static_cast<double>(edge.at(triangle.anchor_x, triangle.anchor_y));
       a[e][lane] = edge.a;

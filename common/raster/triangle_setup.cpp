@@ -96,6 +96,47 @@ Snapped snapped(const Homogeneous& corner) {
           static_cast<std::int32_t>(std::floor(corner.y / corner.w * subpixels + 0.5))};
 }
 
+std::int64_t doubled_area(const Snapped& p, const Snapped& q, const Snapped& r) {
+  return (std::int64_t{q.x} - p.x) * (std::int64_t{r.y} - p.y) -
+         (std::int64_t{q.y} - p.y) * (std::int64_t{r.x} - p.x);
+}
+
+/// False if no pixel's centre may be covered.
+template <std::size_t count>
+bool set_pixels(SetupTriangle& t, const std::array<Snapped, count>& corners,
+                const Viewport& viewport) {
+  const auto [left, right] = std::ranges::minmax(corners, {}, &Snapped::x);
+  const auto [below, above] = std::ranges::minmax(corners, {}, &Snapped::y);
+  t.x0 = std::max(0, first_centre(left.x));
+  t.y0 = std::max(0, first_centre(below.y));
+  t.x1 = std::min(viewport.width, after_last_centre(right.x));
+  t.y1 = std::min(viewport.height, after_last_centre(above.y));
+  t.anchor_x = t.x0 & -tile_size;
+  t.anchor_y = t.y0 & -tile_size;
+  return t.x0 < t.x1 && t.y0 < t.y1;
+}
+
+/// After set_pixels. False as nearness_plane.
+bool set_plane(SetupTriangle& t, const std::array<Homogeneous, 3>& corners, bool perspective,
+               const SetupOptions& options) {
+  NearnessPlane plane;
+  if (!nearness_plane(corners, perspective, t.anchor_x, t.anchor_y, plane)) return false;
+  double value = plane.value;
+  if (options.rounding == DepthRounding::lowered) {
+    const double terms_here = std::abs(value) +
+                              std::abs(plane.a) * (t.x1 - t.anchor_x + tile_size) +
+                              std::abs(plane.b) * (t.y1 - t.anchor_y + tile_size);
+    value -= setup::plane_error * terms_here;
+    if (options.coverage == Coverage::whole_pixels) {
+      value -= 0.5 * (std::abs(plane.a) + std::abs(plane.b));
+    }
+  }
+  t.nearness = static_cast<float>(value);
+  t.step_x = static_cast<float>(plane.a);
+  t.step_y = static_cast<float>(plane.b);
+  return true;
+}
+
 WindowEdge edge(const Snapped& p, const Snapped& q, Coverage coverage) {
   const std::int64_t a = std::int64_t{p.y} - q.y;
   const std::int64_t b = std::int64_t{q.x} - p.x;
@@ -117,7 +158,6 @@ SetupResult set_up_triangle(const WindowTransform& window,
                             std::array<SetupTriangle, max_setup_pieces>& out) {
   SetupResult result;
   const bool perspective = window.perspective();
-  const Viewport& viewport = window.viewport();
   std::array<Homogeneous, 3> v;
   for (std::size_t i = 0; i < 3; ++i) {
     v[i] = {vertices[i].x, vertices[i].y, perspective ? vertices[i].depth : 1.0, vertices[i].depth};
@@ -153,40 +193,63 @@ SetupResult set_up_triangle(const WindowTransform& window,
     Snapped p = corners[0];
     Snapped q = corners[static_cast<std::size_t>(i)];
     Snapped r = corners[static_cast<std::size_t>(i + 1)];
-    const std::int64_t area = (std::int64_t{q.x} - p.x) * (std::int64_t{r.y} - p.y) -
-                              (std::int64_t{q.y} - p.y) * (std::int64_t{r.x} - p.x);
+    const std::int64_t area = doubled_area(p, q, r);
     if (area == 0) continue;
     result.facing = area > 0 ? Facing::front : Facing::back;
     if (area < 0) std::swap(q, r);
     SetupTriangle& t = out[static_cast<std::size_t>(result.count)];
-    t.x0 = std::max(0, first_centre(std::min({p.x, q.x, r.x})));
-    t.y0 = std::max(0, first_centre(std::min({p.y, q.y, r.y})));
-    t.x1 = std::min(viewport.width, after_last_centre(std::max({p.x, q.x, r.x})));
-    t.y1 = std::min(viewport.height, after_last_centre(std::max({p.y, q.y, r.y})));
-    if (t.x0 >= t.x1 || t.y0 >= t.y1) continue;
+    if (!set_pixels(t, std::array{p, q, r}, window.viewport())) continue;
+    if (!set_plane(t, v, perspective, options)) continue;
     t.edges = {edge(p, q, options.coverage), edge(q, r, options.coverage),
-               edge(r, p, options.coverage)};
-    t.anchor_x = t.x0 & -tile_size;
-    t.anchor_y = t.y0 & -tile_size;
-    NearnessPlane plane;
-    if (!nearness_plane(v, perspective, t.anchor_x, t.anchor_y, plane)) continue;
-    double value = plane.value;
-    if (options.rounding == DepthRounding::lowered) {
-      const double terms_here = std::abs(value) +
-                                std::abs(plane.a) * (t.x1 - t.anchor_x + tile_size) +
-                                std::abs(plane.b) * (t.y1 - t.anchor_y + tile_size);
-      value -= setup::plane_error * terms_here;
-      if (options.coverage == Coverage::whole_pixels) {
-        value -= 0.5 * (std::abs(plane.a) + std::abs(plane.b));
-      }
-    }
-    t.nearness = static_cast<float>(value);
-    t.step_x = static_cast<float>(plane.a);
-    t.step_y = static_cast<float>(plane.b);
+               edge(r, p, options.coverage), WindowEdge{}};
     t.id = id;
     ++result.count;
   }
   return result;
+}
+
+bool set_up_pair(const WindowTransform& window, const std::array<WindowPoint, 4>& vertices,
+                 std::uint32_t id, const SetupOptions& options, SetupResult& result,
+                 std::array<SetupTriangle, 2>& out) {
+  result = {};
+  const bool perspective = window.perspective();
+  const double near_m = window.camera().lens.near_m;
+  std::array<Homogeneous, 4> v;
+  std::array<Snapped, 4> corners;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double w = perspective ? vertices[i].depth : 1.0;
+    v[i] = {vertices[i].x, vertices[i].y, w, vertices[i].depth};
+    const double reach = greatest_position * w;
+    const bool regular = v[i].depth - near_m >= 0.0 && v[i].x + reach >= 0.0 &&
+                         reach - v[i].x >= 0.0 && v[i].y + reach >= 0.0 && reach - v[i].y >= 0.0;
+    if (!regular) return false;
+    corners[i] = snapped(v[i]);
+  }
+  const auto& [p, q, r, s] = corners;
+  const std::array<std::int64_t, 4> areas{doubled_area(p, q, r), doubled_area(p, r, s),
+                                          doubled_area(p, q, s), doubled_area(q, r, s)};
+  const bool front = std::ranges::all_of(areas, [](std::int64_t area) { return area > 0; });
+  const bool back = std::ranges::all_of(areas, [](std::int64_t area) { return area < 0; });
+  if (!front && !back) return false;
+  SetupTriangle both;
+  both.id = id;
+  if (set_pixels(both, corners, window.viewport())) {
+    if (!set_plane(both, {v[0], v[1], v[2]}, perspective, options)) return false;
+    const auto side = [&](const Snapped& from, const Snapped& to) {
+      return front ? edge(from, to, options.coverage) : edge(to, from, options.coverage);
+    };
+    both.edges = {side(p, q), side(q, r), side(r, s), side(s, p)};
+    out = {both, both};
+    result.count = 1;
+    if (options.coverage == Coverage::centres) {
+      out[0].edges = {side(p, q), side(q, r), side(r, p), WindowEdge{}};
+      out[1].edges = {side(p, r), side(r, s), side(s, p), WindowEdge{}};
+      out[1].id = id + 1;
+      result.count = 2;
+    }
+  }
+  result.facing = front ? Facing::front : Facing::back;
+  return true;
 }
 
 }  // namespace vislab

@@ -43,7 +43,9 @@ inline constexpr int tile_pixels = tile_size * tile_size;
 struct SetupTriangle {
   // Pixels that may be covered: [x0, x1) x [y0, y1), in the image; never empty.
   std::int32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-  std::array<WindowEdge, 3> edges;
+  // The fourth is 0 everywhere, so does not count, but of quadrilaterals.
+  static constexpr std::size_t edge_count = 4;
+  std::array<WindowEdge, edge_count> edges;
   // The plane of nearness: its value at the centre of pixel (anchor_x, anchor_y), which is the
   // lower left pixel of a tile, and its steps by pixel.
   std::int32_t anchor_x = 0, anchor_y = 0;
@@ -51,7 +53,7 @@ struct SetupTriangle {
   std::uint32_t id = 0;
 
   bool covers(int x, int y) const {
-    return (edges[0].at(x, y) | edges[1].at(x, y) | edges[2].at(x, y)) >= 0;
+    return (edges[0].at(x, y) | edges[1].at(x, y) | edges[2].at(x, y) | edges[3].at(x, y)) >= 0;
   }
   /// At the centre of the lower left pixel of the tile that holds pixel (x, y).
   float nearness_of_tile(int x, int y) const {
@@ -90,6 +92,16 @@ SetupResult set_up_triangle(const WindowTransform& window,
                             const std::array<WindowPoint, 3>& vertices, std::uint32_t id,
                             const SetupOptions& options,
                             std::array<SetupTriangle, max_setup_pieces>& out);
+
+/// The triangles (0, 1, 2) and (0, 2, 3) of four vertices that make up a plane convex
+/// quadrilateral, with one plane of nearness, so that they can be drawn as one. False if they
+/// cannot, since they need clipping, or are not convex any more when snapped, or are seen edge-on:
+/// each is then to be set up by itself. Else as set_up_triangle: Coverage::centres gives the two
+/// triangles with the ids `id` and `id` + 1, whole_pixels the quadrilateral with `id`, which has
+/// the pixels on the diagonal, too.
+bool set_up_pair(const WindowTransform& window, const std::array<WindowPoint, 4>& vertices,
+                 std::uint32_t id, const SetupOptions& options, SetupResult& result,
+                 std::array<SetupTriangle, 2>& out);
 
 /// Calls f(x, y, nearness) for every covered pixel, row by row from below.
 template <typename Function>
