@@ -20,6 +20,7 @@
 //   Zachmann slides 47, 59.
 
 #include <algorithm>
+#include <optional>
 
 #include "algorithms/depth/draw_order.h"
 #include "algorithms/depth/frame_buffer.h"
@@ -29,6 +30,8 @@
 #include "common/culler/registry.h"
 #include "common/culler/stamps.h"
 #include "common/geometry/frustum.h"
+#include "common/raster/box_silhouette.h"
+#include "common/raster/masked_depth.h"
 #include "common/spatial/bvh.h"
 #include "common/spatial/followed_structure.h"
 
@@ -58,7 +61,13 @@ CullerInfo describe() {
   info.culls = Culls::hidden;
   info.space = Space::image;
   info.stage = PipelineStage::application;
-  info.parameters = {depth_culling::scale_parameter(), depth_culling::draw_order_parameter()};
+  info.parameters = {
+      ParameterSpec::choice(
+          "buffer", "exact", {"exact", "masked", "masked_volume"}, build,
+          "a depth for each pixel, or two layers and a mask for each tile, joined by the paper's "
+          "rule of distances or by the volume they hide: a quarter of the work for each tile, and "
+          "less is found hidden, because boxes count as their rectangles"),
+      depth_culling::scale_parameter(), depth_culling::draw_order_parameter()};
   for (ParameterSpec& spec : OccluderBudget::parameters()) {
     info.parameters.push_back(std::move(spec));
   }
@@ -88,11 +97,29 @@ Bvh::Limits limits_of(const ParameterValues& values) {
   return limits;
 }
 
+/// Is a box that a rectangle leaves visible hidden where it is really seen? Only a buffer of pixels
+/// can say.
+bool hidden_in_outline(const DepthRaster& raster, const PixelRays& rays, const BoxWindow& rectangle,
+                       const Aabb& box) {
+  return hides_silhouette(raster.tiles(), rectangle, rays.planes_of(box));
+}
+bool hidden_in_outline(const MaskedDepth&, const PixelRays&, const BoxWindow&, const Aabb&) {
+  return false;
+}
+
+/// With the other rule for layers.
+class VolumeMaskedDepth : public MaskedDepth {
+ public:
+  VolumeMaskedDepth(const Viewport& size, const RasterOptions& options)
+      : MaskedDepth(size, options, LayerMerge::volume) {}
+};
+
 template <typename Raster>
 class MaskedCuller : public ICuller {
  public:
   explicit MaskedCuller(const ParameterValues& values)
       : scale_(depth_culling::read_scale(values)),
+        coverage_(depth_culling::conservative_setup(scale_).coverage),
         sleeps_(values.boolean("sleep")),
         keys_(depth_culling::read_draw_order(values)),
         budget_(values),
@@ -109,7 +136,10 @@ class MaskedCuller : public ICuller {
     stamps_.resize(scene.object_count());
     order_.reserve(scene.object_count());
     kept_.reserve(scene.object_count());
+    emission_.reserve(scene.object_count());
     queue_.reserve(1024);
+    small_.reserve(1024);
+    stack_.reserve(256);
     mean_triangles_ = static_cast<double>(scene.triangle_count()) /
                       static_cast<double>(std::max<std::size_t>(1, scene.object_count()));
   }
@@ -144,12 +174,17 @@ class MaskedCuller : public ICuller {
       cull_list(frame, candidates);
     }
     worth_.add(work_);
+    emission_.sort();
+    kept_.clear();
+    for (const ObjectOrder::Place& place : emission_.places()) kept_.push_back(place.object);
     out.objects(kept_);
   }
 
   std::size_t bytes() const override {
     return meshes_.bytes() + followed_.bytes() + walk_.bytes() + stamps_.bytes() + order_.bytes() +
-           kept_.capacity() * sizeof(ObjectId) + queue_.capacity() * sizeof(Item) + buffer_.bytes();
+           emission_.bytes() + kept_.capacity() * sizeof(ObjectId) +
+           queue_.capacity() * sizeof(Item) + small_.capacity() * sizeof(Small) +
+           stack_.capacity() * sizeof(std::uint32_t) + buffer_.bytes();
   }
 
   Counters counters() const override {
@@ -165,7 +200,11 @@ class MaskedCuller : public ICuller {
     float key;
     std::uint32_t id;
   };
-  enum class Verdict { outside, hidden, visible };
+  enum class Verdict { outside, hidden, visible, undecided };  // the last two are kept
+  struct Small {
+    BoxWindow place;
+    Item item;
+  };
 
   void start(const Frame& frame) {
     work_ = {};
@@ -177,47 +216,46 @@ class MaskedCuller : public ICuller {
     }
     keys_.start(frame.camera);
     frustum_ = frustum_of(frame.camera);
-    kept_.clear();
+    rays_.emplace(buffer_.raster().window(), coverage_);
+    emission_.clear();
   }
 
-  /// `box_px`: pixels of the frame that the box may cover, if it is visible.
-  Verdict look(const Aabb& box, double& box_px) {
+  /// Where a box lies, and what is found of it by its rectangle.
+  Verdict look(const Aabb& box, BoxWindow& place) {
     ++queries_;
     ++work_.queries;
     Raster& raster = buffer_.raster();
-    const Coverage coverage = depth_culling::conservative_setup(scale_).coverage;
-    BoxWindow place;
-    switch (project_box(raster.window(), box, coverage, place)) {
+    switch (project_box(raster.window(), box, coverage_, place)) {
       case BoxPlace::outside:
         return Verdict::outside;
       case BoxPlace::undecided:
         for (const Plane& plane : frustum_.span()) {
           if (surely_outside(plane, box)) return Verdict::outside;
         }
-        box_px = 1e9;
-        return Verdict::visible;
+        return Verdict::undecided;
       case BoxPlace::inside:
         break;
     }
-    if (raster.hides(place)) return Verdict::hidden;
-    box_px = static_cast<double>(place.x1 - place.x0) * (place.y1 - place.y0) * scale_ * scale_;
-    return Verdict::visible;
+    return raster.hides(place) ? Verdict::hidden : Verdict::visible;
   }
 
-  void look_at_object(const Frame& frame, ObjectId object) {
-    double box_px = 0.0;
-    switch (look(frame.objects.bounds[object], box_px)) {
-      case Verdict::outside:
-        return;
-      case Verdict::hidden:
-        count_hidden(1, scene_->triangle_count(object));
-        return;
-      case Verdict::visible:
-        break;
+  /// Pixels of the frame that the box may cover.
+  double pixels(Verdict verdict, const BoxWindow& place) const {
+    if (verdict == Verdict::undecided) return 1e9;
+    return static_cast<double>(place.x1 - place.x0) * (place.y1 - place.y0) * scale_ * scale_;
+  }
+
+  /// Of an object whose rectangle is not hidden.
+  void take(const Frame& frame, ObjectId object, float key, Verdict verdict,
+            const BoxWindow& place) {
+    const Aabb& box = frame.objects.bounds[object];
+    if (verdict == Verdict::visible && hidden_in_outline(buffer_.raster(), *rays_, place, box)) {
+      count_hidden(1, scene_->triangle_count(object));
+      return;
     }
-    kept_.push_back(object);
+    emission_.add(key, object);
     const std::uint32_t triangles = scene_->triangle_count(object);
-    if (!budget_.take(box_px, triangles)) return;
+    if (!budget_.take(pixels(verdict, place), triangles)) return;
     const RasterDraw draw = meshes_.of(object, frame);
     buffer_.raster().draw({&draw, 1});
     work_.drawn_triangles += triangles;
@@ -228,6 +266,10 @@ class MaskedCuller : public ICuller {
     work_.hidden_objects += objects;
     work_.hidden_triangles += triangles;
     objects_hidden_ += objects;
+  }
+  void count_hidden_node(std::uint32_t index) {
+    const std::uint32_t below = followed_.structure().count_below(index);
+    count_hidden(below, static_cast<std::uint64_t>(below * mean_triangles_));
   }
 
   void cull_list(const Frame& frame, const Candidates& candidates) {
@@ -249,36 +291,96 @@ class MaskedCuller : public ICuller {
       }
     }
     order_.sort();
-    for (const ObjectOrder::Place& place : order_.places()) look_at_object(frame, place.object);
+    for (const ObjectOrder::Place& at : order_.places()) {
+      BoxWindow place;
+      const Verdict verdict = look(frame.objects.bounds[at.object], place);
+      if (verdict == Verdict::hidden) count_hidden(1, scene_->triangle_count(at.object));
+      if (verdict >= Verdict::visible) take(frame, at.object, at.key, verdict, place);
+    }
   }
 
-  /// From the root of the hierarchy; of what it comes to, only candidates are looked at.
+  /// From the root of the hierarchy; of what it comes to, only candidates are looked at. What is
+  /// too small to hide others waits until everything that is not has been drawn.
   void walk(const Frame& frame) {
     const auto& structure = followed_.structure();
     const auto object_count = static_cast<std::uint32_t>(scene_->object_count());
     const std::span<const SpatialNode> nodes = structure.nodes();
     queue_.clear();
+    small_.clear();
     for (const ObjectId object : structure.unplaced()) push_object(frame, object);
     push_node(nodes, SpatialStructure::root);
     while (!queue_.empty()) {
       std::ranges::pop_heap(queue_, later);
-      const std::uint32_t id = queue_.back().id;
+      const Item item = queue_.back();
       queue_.pop_back();
-      if (id < object_count) {
-        look_at_object(frame, id);
+      const bool is_object = item.id < object_count;
+      const std::uint32_t index = item.id - object_count;
+      BoxWindow place;
+      const Verdict verdict =
+          look(is_object ? frame.objects.bounds[item.id] : nodes[index].box, place);
+      if (verdict == Verdict::outside) continue;
+      if (verdict == Verdict::hidden) {
+        if (is_object) {
+          count_hidden(1, scene_->triangle_count(item.id));
+        } else {
+          count_hidden_node(index);
+        }
         continue;
       }
-      const std::uint32_t index = id - object_count;
-      const SpatialNode& node = nodes[index];
-      double box_px = 0.0;
-      const Verdict verdict = look(node.box, box_px);
-      if (verdict == Verdict::hidden) {
-        const std::uint32_t below = structure.count_below(index);
-        count_hidden(below, static_cast<std::uint64_t>(below * mean_triangles_));
+      if (pixels(verdict, place) < budget_.least_px()) {
+        small_.push_back({place, item});
+        continue;
       }
-      if (verdict != Verdict::visible) continue;
+      if (is_object) {
+        take(frame, item.id, item.key, verdict, place);
+        continue;
+      }
       for (const ObjectId object : structure.objects_at(index)) push_object(frame, object);
-      for (std::uint32_t i = 0; i < node.child_count; ++i) push_node(nodes, node.first_child + i);
+      for (std::uint32_t i = 0; i < nodes[index].child_count; ++i) {
+        push_node(nodes, nodes[index].first_child + i);
+      }
+    }
+    for (const Small& small : small_) {
+      if (small.item.id < object_count) {
+        if (buffer_.raster().hides(small.place)) {
+          count_hidden(1, scene_->triangle_count(small.item.id));
+        } else {
+          take(frame, small.item.id, small.item.key, Verdict::visible, small.place);
+        }
+      } else if (buffer_.raster().hides(small.place)) {
+        count_hidden_node(small.item.id - object_count);
+      } else {
+        take_small_below(frame, small.item.id - object_count);
+      }
+    }
+  }
+
+  /// Objects at and below a node that is not hidden, none of which is drawn into the buffer.
+  void take_small_below(const Frame& frame, std::uint32_t top) {
+    const auto& structure = followed_.structure();
+    const std::span<const SpatialNode> nodes = structure.nodes();
+    stack_.clear();
+    stack_.push_back(top);
+    while (!stack_.empty()) {
+      const std::uint32_t index = stack_.back();
+      stack_.pop_back();
+      BoxWindow place;
+      for (const ObjectId object : structure.objects_at(index)) {
+        if (!all_offered_ && !stamps_.contains(object)) continue;
+        const Aabb& box = frame.objects.bounds[object];
+        const Verdict verdict = look(box, place);
+        if (verdict == Verdict::hidden) count_hidden(1, scene_->triangle_count(object));
+        if (verdict >= Verdict::visible) {
+          take(frame, object, keys_.of(box, object), verdict, place);
+        }
+      }
+      for (std::uint32_t i = 0; i < nodes[index].child_count; ++i) {
+        const std::uint32_t child = nodes[index].first_child + i;
+        if (nodes[child].box.empty()) continue;
+        const Verdict verdict = look(nodes[child].box, place);
+        if (verdict == Verdict::hidden) count_hidden_node(child);
+        if (verdict >= Verdict::visible) stack_.push_back(child);
+      }
     }
   }
 
@@ -303,6 +405,7 @@ class MaskedCuller : public ICuller {
 
   CullerInfo info_ = describe();
   int scale_;
+  Coverage coverage_;
   bool sleeps_;
   const Scene* scene_ = nullptr;
   DrawKeys keys_;
@@ -319,8 +422,12 @@ class MaskedCuller : public ICuller {
   Worth::Work work_;
   bool all_offered_ = true;
   ObjectStamps stamps_;  // of what is offered, if that is a list
+  std::optional<PixelRays> rays_;
   std::vector<Item> queue_;
-  ObjectOrder order_;
+  std::vector<Small> small_;
+  std::vector<std::uint32_t> stack_;  // nodes
+  ObjectOrder order_;                 // of a list of candidates
+  ObjectOrder emission_;
   std::vector<ObjectId> kept_;
 
   std::uint64_t queries_ = 0;
@@ -333,7 +440,12 @@ class MaskedCuller : public ICuller {
 namespace cullers {
 
 CullerEntry depth_masked() {
-  return {describe(), [](const ParameterValues& values) {
+  return {describe(), [](const ParameterValues& values) -> std::unique_ptr<ICuller> {
+            const std::string& buffer = values.choice("buffer");
+            if (buffer == "masked") return std::make_unique<MaskedCuller<MaskedDepth>>(values);
+            if (buffer == "masked_volume") {
+              return std::make_unique<MaskedCuller<VolumeMaskedDepth>>(values);
+            }
             return std::make_unique<MaskedCuller<DepthRaster>>(values);
           }};
 }

@@ -42,6 +42,7 @@ class OccluderBudget {
   static std::vector<ParameterSpec> parameters();
   explicit OccluderBudget(const ParameterValues& values);
 
+  double least_px() const { return least_px_; }
   /// Once a frame.
   void start() { left_ = triangles_; }
   /// May an object be drawn whose box covers so many pixels? Takes its triangles from the budget if
