@@ -18,6 +18,10 @@ std::vector<Fields> guide_fields(const std::vector<BlockSummary>& blocks);
 /// mistake; the worst of them stands for it.
 std::vector<Fields> control_fields(const ReportInput& input);
 
+/// One entry for each block with methods that paint an image themselves, for templates/surfaces.md.
+/// Pictures go into `folder`.
+std::vector<Fields> surface_fields(const ReportInput& input, const std::filesystem::path& folder);
+
 /// One entry for each source of which any figure has its own beside it, for templates/published.md.
 std::vector<Fields> published_fields(const std::vector<PublishedFigures>& published,
                                      const std::vector<BlockSummary>& blocks);

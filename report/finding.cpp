@@ -34,9 +34,10 @@ std::string loss_text(double ratio) {
                      : std::string("(") + format_number(ratio) + " times the frame)";
 }
 
-/// Pixels that are wrong: those left out, or where none is, those whose image differs.
+/// Pixels that are wrong: those left out, or where none is, those whose image differs, also the one
+/// that a method painted itself.
 std::uint64_t wrong_pixels(const CellSummary& cell) {
-  return std::max(cell.false_px, cell.drawn ? cell.image_px : 0);
+  return std::max({cell.false_px, cell.drawn ? cell.image_px : 0, cell.surface_px});
 }
 
 /// Where nothing is drawn: what counts is what is left over.

@@ -107,18 +107,19 @@ class SpanBuffer final : public SurfaceCuller {
     span_count_ += spans_.size();
   }
 
-  /// `spans` may be put in any order.
-  void paint_row(int y, std::span<Span> spans) {
+  void paint_row(int y, std::span<const Span> spans) {
     end_points_.clear();
+    by_left_end_.clear();
     for (const Span& span : spans) {
+      by_left_end_.push_back(&span);
       end_points_.push_back({span.row.x0, span.ends.left});
       end_points_.push_back({span.row.x1, span.ends.right});
     }
     std::ranges::sort(end_points_, [](const EndPoint& p, const EndPoint& q) {
       return p.x != q.x ? p.x < q.x : p.exact < q.exact;
     });
-    std::ranges::sort(spans, [](const Span& s, const Span& t) {
-      return s.row.x0 != t.row.x0 ? s.row.x0 < t.row.x0 : s.triangle < t.triangle;
+    std::ranges::sort(by_left_end_, [](const Span* s, const Span* t) {
+      return s->row.x0 != t->row.x0 ? s->row.x0 < t->row.x0 : s->triangle < t->triangle;
     });
     active_.clear();
     std::size_t next = 0;
@@ -128,8 +129,8 @@ class SpanBuffer final : public SurfaceCuller {
       const int x1 = end_points_[i + 1].x;
       if (x0 == x1) continue;  // the last of equal ones begins the piece
       std::erase_if(active_, [&](const Span* span) { return span->row.x1 <= x0; });
-      for (; next < spans.size() && spans[next].row.x0 <= x0; ++next) {
-        active_.push_back(&spans[next]);
+      for (; next < by_left_end_.size() && by_left_end_[next]->row.x0 <= x0; ++next) {
+        active_.push_back(by_left_end_[next]);
       }
       cut_count_ += active_.size();
       const double at =
@@ -153,7 +154,7 @@ class SpanBuffer final : public SurfaceCuller {
   std::vector<Span> spans_, sorted_;
   std::vector<std::size_t> row_begins_;
   std::vector<EndPoint> end_points_;
-  std::vector<const Span*> active_;
+  std::vector<const Span*> by_left_end_, active_;
   std::uint64_t span_count_ = 0, cut_count_ = 0, drawn_count_ = 0, writes_ = 0;
 };
 

@@ -18,6 +18,11 @@ std::span<const Metric> metrics() {
       Metric{"image_px", "pixels", lower, "undisputed ids that differ from the unculled image"},
       Metric{"disputed_image_px", "pixels", lower,
              "disputed ids that differ from the unculled image: excused, not false"},
+      Metric{"surface_px", "pixels", lower,
+             "undisputed pixels that a hidden-surface algorithm's own image gives to another "
+             "triangle than truth"},
+      Metric{"disputed_surface_px", "pixels", lower,
+             "disputed pixels of that image: excused, not false"},
       Metric{"excused_px", "samples", lower,
              "disputed samples whose triangle was left out: excused, not false"},
       Metric{"disputed_px", "pixels", neither,

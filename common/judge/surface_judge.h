@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "common/judge/truth.h"
 
@@ -20,5 +21,10 @@ struct SurfaceVerdict {
 /// std::logic_error if the sizes differ. O(pixels), and a dispute for each that differs.
 SurfaceVerdict judge_surface(const Frame& frame, const Scene& scene, const FrameTruth& truth,
                              std::span<const TriangleId> owners);
+
+/// By pixel: 1 where judge_surface() counts a wrong one, else 0.
+std::vector<std::uint8_t> wrong_surface_pixels(const Frame& frame, const Scene& scene,
+                                               const FrameTruth& truth,
+                                               std::span<const TriangleId> owners);
 
 }  // namespace vislab

@@ -124,6 +124,11 @@ void summarise_accuracy(const CellVerdicts& verdicts, Culls culls, CellSummary& 
     summary.image_px += image.image_px;
     summary.disputed_image_px += image.disputed_image_px;
   }
+  summary.paints = !verdicts.surfaces.empty();
+  for (const SurfaceVerdict& surface : verdicts.surfaces) {
+    summary.surface_px += surface.surface_px;
+    summary.disputed_surface_px += surface.disputed_surface_px;
+  }
   summary.disputed_px = verdicts.floor_disputed_px;
   summary.drawn = !verdicts.images.empty();
   summary.judged = !verdicts.frames.empty();
@@ -305,6 +310,10 @@ double CellSummary::metric(const std::string& name) const {
   if (name == "false_jittered") return if_judged(false_jittered);
   if (name == "image_px") return drawn ? static_cast<double>(image_px) : nan;
   if (name == "disputed_image_px") return drawn ? static_cast<double>(disputed_image_px) : nan;
+  if (name == "surface_px") return paints ? static_cast<double>(surface_px) : nan;
+  if (name == "disputed_surface_px") {
+    return paints ? static_cast<double>(disputed_surface_px) : nan;
+  }
   if (name == "excused_px") return if_judged(excused_px);
   if (name == "disputed_px") return drawn ? static_cast<double>(disputed_px) : nan;
   if (name == "over") return over;
@@ -329,6 +338,7 @@ double CellSummary::metric(const std::string& name) const {
 
 bool is_free_of_errors(const CellSummary& cell) {
   if (!cell.judged || cell.false_px > 0 || (cell.drawn && cell.image_px > 0)) return false;
+  if (cell.paints && cell.surface_px > 0) return false;
   if (cell.guarantee == Guarantee::image_exact) return true;
   return cell.false_jittered == 0 && cell.false_objects == 0;
 }

@@ -44,6 +44,8 @@ struct CellSummary {
   std::uint64_t disputed_px = 0;  // the error floor of the cell's frames, whatever was culled
   bool drawn = false;
   std::uint64_t image_px = 0, disputed_image_px = 0;
+  bool paints = false;  // an image of its own: a hidden-surface algorithm
+  std::uint64_t surface_px = 0, disputed_surface_px = 0;
   // Ratios of sums over all frames; NaN where nothing is visible, or for recall nothing is hidden.
   double over = 0.0, over_objects = 0.0, under = 0.0;
   /// Triangles culled / those that a perfect method of the kind (CullerInfo::culls) would cull.

@@ -104,6 +104,7 @@ std::string answer_hash(const ResultCell& cell) {
   for (const CellFrame& frame : cell.frames) {
     text += frame.set + " " + frame.truth;
     if (!frame.one_sided.empty()) text += " " + frame.one_sided;
+    if (!frame.surface.empty()) text += " surface " + frame.surface;
     text += "\n";
   }
   return hash_text(text);
@@ -118,6 +119,7 @@ std::string to_json(const ResultCell& cell) {
                       {"draws", frame.draws},
                       {"pieces", frame.pieces},
                       {"one_sided", frame.one_sided},
+                      {"surface", frame.surface},
                       {"counters", frame.counters}});
   }
   json rounds = json::array();
@@ -196,13 +198,13 @@ std::optional<ResultCell> parse_cell(const std::string& text, const std::string&
     cell.build_ms = j.at("build_ms");
     cell.bytes = j.at("bytes");
     for (const json& frame : j.at("frames")) {
-      cell.frames.push_back({frame.at("set"), frame.at("truth"), frame.at("submitted_triangles"),
-                             frame.at("counters"),
-                             // Since there are costs of them, and methods that use the device's
-                             // culling.
-                             frame.value("draws", std::uint64_t{0}),
-                             frame.value("pieces", std::uint64_t{0}),
-                             frame.value("one_sided", std::string())});
+      cell.frames.push_back(
+          {frame.at("set"), frame.at("truth"), frame.at("submitted_triangles"),
+           frame.at("counters"),
+           // Since there are costs of them, and methods that use the device's
+           // culling.
+           frame.value("draws", std::uint64_t{0}), frame.value("pieces", std::uint64_t{0}),
+           frame.value("one_sided", std::string()), frame.value("surface", std::string())});
     }
     for (const json& r : j.at("rounds")) {
       cell.rounds.push_back({r.at("session"), r.at("number"), r.at("update_us"), r.at("cull_us"),

@@ -52,6 +52,8 @@ struct CellFrame {
   std::uint64_t pieces = 0;  // contiguous ranges that these are made of
   /// Hash of the set of triangles whose backs the device left out; "" if none.
   std::string one_sided = {};
+  /// Hash of the image that a hidden-surface algorithm painted itself; "" if it paints none.
+  std::string surface = {};
 };
 
 struct ResultCell {

@@ -7,6 +7,7 @@
 
 #include "common/scene/error.h"
 #include "experiments/results/files.h"
+#include "experiments/results/hash.h"
 #include "experiments/results/json_reader.h"
 
 namespace vislab {
@@ -116,9 +117,15 @@ Verdict verdict_from(const json& j) {
 
 }  // namespace
 
+std::string surface_hash(std::span<const TriangleId> owners) {
+  std::string bytes;
+  for (const TriangleId owner : owners) append_number(bytes, owner);
+  return hash_text(bytes);
+}
+
 ResultStore ResultStore::create(fs::path folder) {
   std::error_code code;
-  for (const char* part : {"cells", "sets", "truth", "verdicts"}) {
+  for (const char* part : {"cells", "sets", "images", "truth", "verdicts"}) {
     fs::create_directories(folder / part, code);
     if (code || ::access((folder / part).c_str(), W_OK | X_OK) != 0) {
       throw InputError("results folder " + folder.string() + " cannot be written to" +
@@ -193,6 +200,40 @@ VisibleSet ResultStore::load_set(const std::string& hash) const {
   return set;
 }
 
+void ResultStore::save_surface(const std::string& hash, std::span<const TriangleId> owners) const {
+  const fs::path file = folder_ / "images" / (hash + ".ids");
+  if (fs::exists(file)) return;
+  std::string bytes;
+  for (std::size_t at = 0; at < owners.size();) {
+    std::size_t end = at + 1;
+    while (end < owners.size() && owners[end] == owners[at]) ++end;
+    append_number(bytes, owners[at]);
+    append_number(bytes, static_cast<std::uint32_t>(end - at));
+    at = end;
+  }
+  write_file(file, compressed(bytes));
+}
+
+std::vector<TriangleId> ResultStore::load_surface(const std::string& hash) const {
+  const fs::path file = folder_ / "images" / (hash + ".ids");
+  const InputError corrupt(file.string() +
+                           ": not an image of owners; delete it and run again with --force");
+  const std::optional<std::string> bytes = uncompressed(read_file(file));
+  if (!bytes) throw corrupt;
+  // Images have no more pixels than a device draws.
+  constexpr std::size_t most_pixels = std::size_t{1} << 28U;
+  std::vector<TriangleId> owners;
+  for (std::size_t at = 0; at < bytes->size();) {
+    std::uint32_t owner = 0;
+    std::uint32_t count = 0;
+    if (!take_number(*bytes, at, owner) || !take_number(*bytes, at, count)) throw corrupt;
+    if (count > most_pixels - owners.size()) throw corrupt;
+    owners.insert(owners.end(), count, owner);
+  }
+  if (surface_hash(owners) != hash) throw corrupt;
+  return owners;
+}
+
 std::optional<CellVerdicts> ResultStore::load_verdicts(const ResultCell& cell,
                                                        const std::string& judge) const {
   const fs::path file = folder_ / "verdicts" / (cell.key.id() + ".json");
@@ -206,6 +247,9 @@ std::optional<CellVerdicts> ResultStore::load_verdicts(const ResultCell& cell,
     for (const json& frame : j.at("frames")) verdicts.frames.push_back(verdict_from(frame));
     for (const json& image : j.at("images")) {
       verdicts.images.push_back({image.at("image_px"), image.at("disputed_image_px")});
+    }
+    for (const json& surface : j.at("surfaces")) {
+      verdicts.surfaces.push_back({surface.at("surface_px"), surface.at("disputed_surface_px")});
     }
     verdicts.back_facing = culled_from(j.at("back_facing"));
     verdicts.outside = culled_from(j.at("outside"));
@@ -226,10 +270,16 @@ void ResultStore::save_verdicts(const std::string& id, const CellVerdicts& verdi
     images.push_back(
         {{"image_px", image.image_px}, {"disputed_image_px", image.disputed_image_px}});
   }
+  json surfaces = json::array();
+  for (const SurfaceVerdict& surface : verdicts.surfaces) {
+    surfaces.push_back(
+        {{"surface_px", surface.surface_px}, {"disputed_surface_px", surface.disputed_surface_px}});
+  }
   const json j = {{"judge", verdicts.judge},
                   {"answers", verdicts.answers},
                   {"frames", frames},
                   {"images", images},
+                  {"surfaces", surfaces},
                   {"back_facing", to_json(verdicts.back_facing)},
                   {"outside", to_json(verdicts.outside)},
                   {"toggles", verdicts.stability.toggles},

@@ -1,6 +1,7 @@
 // A results folder: one JSON file per cell, visible sets once per hash, truth, verdicts.
 //   cells/ID.json      what was measured (the truth of the results)
 //   sets/HASH.set      visible sets, compressed
+//   images/HASH.ids    images of hidden-surface algorithms, compressed
 //   truth/KEY.truth    what rays saw, compressed
 //   verdicts/ID.json   what the judge made of a cell's sets; derived, may be deleted
 // Files are written to a temporary name and renamed.
@@ -8,6 +9,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,17 +17,22 @@
 #include "common/judge/cullable.h"
 #include "common/judge/metrics.h"
 #include "common/judge/stability.h"
+#include "common/judge/surface_judge.h"
 #include "experiments/results/cell.h"
 
 namespace vislab {
+
+/// Hash of the owners of all pixels, as the store names them; 32 hexadecimal digits.
+std::string surface_hash(std::span<const TriangleId> owners);
 
 /// The judge's verdicts on all frames of a cell, and the error floor of those frames.
 struct CellVerdicts {
   std::string judge;    // hash of the judge's sources: verdicts of another judge are made again
   std::string answers;  // answer_hash of the cell: verdicts on other answers are made again
   std::vector<Verdict> frames;
-  std::vector<ImageVerdict> images;  // empty if nothing was drawn
-  CulledOf back_facing, outside;     // sums over frames
+  std::vector<ImageVerdict> images;      // empty if nothing was drawn
+  std::vector<SurfaceVerdict> surfaces;  // empty unless the culler paints an image itself
+  CulledOf back_facing, outside;         // sums over frames
   Stability stability;
   std::uint64_t floor_disputed_px = 0;    // truth against the unculled image, sum over frames
   std::uint64_t floor_undisputed_px = 0;  // not zero only if the judge itself is at fault
@@ -53,6 +60,11 @@ class ResultStore {
   void save_set(const std::string& hash, const VisibleSet& set) const;
   /// Throws InputError if it is missing or corrupt.
   VisibleSet load_set(const std::string& hash) const;
+
+  /// Writes the owners of all pixels, unless they are there.
+  void save_surface(const std::string& hash, std::span<const TriangleId> owners) const;
+  /// Throws InputError if they are missing or corrupt.
+  std::vector<TriangleId> load_surface(const std::string& hash) const;
 
   /// Empty if there are none, they cannot be read, another judge made them, or the cell has other
   /// answers by now.

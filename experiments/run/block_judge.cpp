@@ -68,6 +68,7 @@ void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene
     std::map<std::string, VisibleSet> sets;
     std::map<std::pair<std::string, Granularity>, Verdict> verdicts;
     std::map<std::string, ImageVerdict> images;  // by the sets that were drawn, and one-sided
+    std::map<std::string, SurfaceVerdict> surfaces;
     for (Pending& entry : pending) {
       const std::string& hash = entry.cell->frames[index].set;
       const Granularity granularity = entry.cell->granularity;
@@ -88,6 +89,13 @@ void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene
           images.emplace(drawn_as, image->judge(frame, set, objects_of(one_sided, scene, store)));
         }
         entry.verdicts.images.push_back(images.at(drawn_as));
+      }
+      const std::string& surface = entry.cell->frames[index].surface;
+      if (!surface.empty()) {
+        if (!surfaces.contains(surface)) {
+          surfaces.emplace(surface, judge_surface(frame, scene, seen, store.load_surface(surface)));
+        }
+        entry.verdicts.surfaces.push_back(surfaces.at(surface));
       }
       entry.verdicts.floor_disputed_px += floor.disputed_px;
       entry.verdicts.floor_undisputed_px += floor.undisputed_px;

@@ -350,6 +350,7 @@ class BlockRun {
       if (!cell.frames.empty() && cell.repeatability != Repeatability::timing &&
           (cell.frames[i].set != run.frames[i].set ||
            cell.frames[i].one_sided != run.frames[i].one_sided ||
+           cell.frames[i].surface != run.frames[i].surface ||
            cell.frames[i].counters != run.frames[i].counters)) {
         throw std::runtime_error("not repeatable as it declares (" +
                                  std::string(to_string(cell.repeatability)) + "): frame " +
@@ -358,6 +359,9 @@ class BlockRun {
       store_.save_set(run.frames[i].set, run.sets[i]);
       if (!run.frames[i].one_sided.empty()) {
         store_.save_set(run.frames[i].one_sided, run.one_sided[i]);
+      }
+      if (!run.frames[i].surface.empty()) {
+        store_.save_surface(run.frames[i].surface, run.surfaces[i]);
       }
     }
     if (cell.frames.empty()) cell.frames = std::move(run.frames);

@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include "experiments/results/store.h"
+
 namespace vislab {
 namespace {
 
@@ -73,6 +75,8 @@ PathRun run_path(ICuller& culler, const Scene& scene, const Path& path, const Vi
       one_sided = triangles_of(device->one_sided(), scene);
       answer.one_sided = one_sided.hash();
     }
+    const std::span<const TriangleId> surface = culler.surface_image();
+    if (!surface.empty()) answer.surface = surface_hash(surface);
     Counters after = culler.counters();
     for (std::size_t k = 0; k < after.size(); ++k) {
       const std::uint64_t old = k < before.size() ? before[k].second : 0;
@@ -82,6 +86,7 @@ PathRun run_path(ICuller& culler, const Scene& scene, const Path& path, const Vi
     run.frames.push_back(std::move(answer));
     run.sets.push_back(std::move(set));
     run.one_sided.push_back(std::move(one_sided));
+    run.surfaces.emplace_back(surface.begin(), surface.end());
   });
   return run;
 }

@@ -34,7 +34,9 @@ struct PathRun {
   Round round;                        // session and number left empty
   std::vector<VisibleSet> sets;       // by frame
   std::vector<VisibleSet> one_sided;  // by frame: triangles of objects drawn one-sided
-  std::vector<CellFrame> frames;      // hashes, sizes and counters; truth left empty
+  /// By frame: the images that hidden-surface algorithms painted, empty for other methods.
+  std::vector<std::vector<TriangleId>> surfaces;
+  std::vector<CellFrame> frames;  // hashes, sizes and counters; truth left empty
 };
 
 /// Resets the culler and runs it over the path. `device` may be null: nothing is drawn.

@@ -125,7 +125,7 @@ std::pair<int, int> parse_shard(const std::string& text) {
 void print_results(const Lab& lab, const RunCall& call, const std::set<std::string>& ids) {
   Table table({"scene", "path", "frames", "culler", "status", "frame_ms", "against_none", "cull_us",
                "draw_ms", "submitted_triangles", "over", "recall", "false_px", "pixels", "image_px",
-               "false_objects", "false_triangles", "excused_px"});
+               "surface_px", "false_objects", "false_triangles", "excused_px"});
   for (const BlockSummary& block : summarise(present_cells(call.results, lab.cullers))) {
     for (const CellSummary& cell : block.cells) {
       if (!ids.contains(cell.id)) continue;
@@ -138,7 +138,8 @@ void print_results(const Lab& lab, const RunCall& call, const std::set<std::stri
                  cell.frame_ms.median.value, cell.against_none.value, cell.cull_us.median.value,
                  cell.draw_ms.median.value, cell.submitted_triangles, judged(cell.over),
                  judged(cell.recall), judged(cell.false_px), judged(cell.pixels),
-                 cell.drawn ? judged(cell.image_px) : TableValue(), judged(cell.false_objects),
+                 cell.drawn ? judged(cell.image_px) : TableValue(),
+                 cell.paints ? judged(cell.surface_px) : TableValue(), judged(cell.false_objects),
                  judged(cell.false_triangles), judged(cell.excused_px)});
     }
   }
