@@ -53,13 +53,12 @@ class HzbCuller final : public depth_culling::TreeCuller<Structure> {
  private:
   void find_visible(const Frame& frame, const Candidates& candidates) override {
     this->draw_seen_before(frame, candidates);
-    this->walk(
-        frame, candidates,
-        [&](ObjectId object, depth_culling::BoxVerdict verdict, const BoxWindow& place) {
-          this->kept().push_back(object);
-          this->draw_later(object, verdict, place, frame);
-        },
-        [&] { this->draw_now(); });
+    this->walk(frame, candidates,
+               [&](ObjectId object, depth_culling::BoxVerdict verdict, const BoxWindow& place) {
+                 this->kept().push_back(object);
+                 this->draw_later(object, verdict, place, frame);
+                 this->draw_now();
+               });
   }
 };
 

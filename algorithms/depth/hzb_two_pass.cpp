@@ -2,9 +2,10 @@
 //
 // Idea: what was visible in the last frame is drawn into the buffer at once, and the pyramid is
 //   built from it at once: no drawing waits for an answer. All objects are then tested against it.
-//   What appears (passes, though it was not drawn) is drawn in a second pass, the pyramid is built
-//   again, and what passed the first test is asked again, so that what appears may hide what
-//   appears. Both passes draw and ask in bulk, as suits wide machines.
+//   What appears (passes, though it was not drawn) is drawn in a second pass, as soon as it amounts
+//   to a good part of the image, and the pyramid is built again. In the end what passed is asked
+//   once more, so that what appears may hide what appears. Both passes draw in bulk, as suits wide
+//   machines.
 // Guarantee: image_exact at the frame's viewport, as depth.hzb: last frame is but a guess at
 //   occluders, which are drawn where they are now.
 // Cost: O(nodes and objects not hidden by last frame's objects) questions, O(triangles drawn) for
@@ -32,9 +33,9 @@ CullerInfo describe() {
       "buffer) + O(tiles); update O(movers and their ancestors), for the octree O(objects) if "
       "anything changes";
   info.limits =
-      "Objects are tested by their boxes. The first frame and cuts of the camera cost O(objects in "
-      "the view). Sleeps while it does not pay: then it keeps everything that it is offered as a "
-      "list, and what is in the view of everything.";
+      "Objects are tested by their boxes. In the first frame and after cuts of the camera only the "
+      "second pass finds anything. Sleeps while it does not pay: then it keeps everything that it "
+      "is offered as a list, and what is in the view of everything.";
   info.sources = {"Greene, Kass, Miller 1993, Hierarchical Z-Buffer Visibility",
                   "Haar and Aaltonen 2015, GPU-Driven Rendering Pipelines"};
   return info;
@@ -63,17 +64,17 @@ class TwoPassCuller final : public depth_culling::TreeCuller<Structure> {
   void find_visible(const Frame& frame, const Candidates& candidates) override {
     passed_.clear();
     this->draw_seen_before(frame, candidates);
-    this->walk(
-        frame, candidates,
-        [&](ObjectId object, BoxVerdict verdict, const BoxWindow& place) {
-          passed_.push_back({object, verdict, place});
-          this->draw_later(object, verdict, place, frame);
-        },
-        [] {});
-    const bool again = this->draw_now();
+    bool again = false;
+    this->walk(frame, candidates, [&](ObjectId object, BoxVerdict verdict, const BoxWindow& place) {
+      passed_.push_back({object, verdict, place});
+      this->draw_later(object, verdict, place, frame);
+      if (this->draw_if_much()) again = true;
+    });
+    if (this->draw_now()) again = true;
     for (const Passed& object : passed_) {
-      if (again && object.verdict == BoxVerdict::visible && this->hides_now(object.place)) continue;
-      this->kept().push_back(object.object);
+      const bool hidden =
+          again && object.verdict == BoxVerdict::visible && this->hides_now(object.place);
+      if (!hidden) this->kept().push_back(object.object);
     }
   }
 

@@ -2,6 +2,8 @@
 // many objects a hidden node saves.
 #pragma once
 
+#include <algorithm>
+#include <optional>
 #include <type_traits>
 #include <vector>
 
@@ -20,9 +22,10 @@ class OccludeeTree {
  public:
   using NodeIndex = SpatialStructure::NodeIndex;
 
-  explicit OccludeeTree(const typename Structure::Limits& limits) : followed_(limits) {}
+  explicit OccludeeTree(const typename Structure::Limits& limits) : limits_(limits) {}
 
-  const Structure& structure() const { return followed_.structure(); }
+  /// Only after build().
+  const Structure& structure() const { return followed_->structure(); }
   std::uint32_t count_below(NodeIndex node) const { return structure().count_below(node); }
 
   /// Empty if there is nothing at or below the node. Of all objects' boxes, but for those that are
@@ -37,14 +40,15 @@ class OccludeeTree {
 
   /// The scene outlives this.
   void build(const Scene& scene) {
-    followed_.build(scene);
+    if constexpr (!has_tight_boxes) limits_.overlap_m = overlap(scene);
+    followed_.emplace(limits_).build(scene);
     stale_ = true;
   }
   void reset() {
-    if (followed_.reset()) stale_ = true;
+    if (followed_->reset()) stale_ = true;
   }
   void update(const Frame& frame, const Changes& changes) {
-    if (followed_.update(frame, changes)) stale_ = true;
+    if (followed_->update(frame, changes)) stale_ = true;
   }
   /// To be called before a walk.
   void start(const Frame& frame) {
@@ -55,12 +59,26 @@ class OccludeeTree {
   }
 
   std::size_t bytes() const {
-    return followed_.bytes() + tight_.capacity() * sizeof(Aabb) +
+    return (followed_ ? followed_->bytes() : 0) + tight_.capacity() * sizeof(Aabb) +
            order_.capacity() * sizeof(NodeIndex);
   }
 
  private:
   static constexpr bool has_tight_boxes = std::is_same_v<Structure, Bvh>;
+
+  /// So much that nine in ten objects stay below planes that they straddle. Cells may be as loose:
+  /// what counts are the tight boxes.
+  static double overlap(const Scene& scene) {
+    std::vector<double> radii;
+    radii.reserve(scene.object_count());
+    for (ObjectId object = 0; object < scene.object_count(); ++object) {
+      const Aabb box = transformed(scene.mesh_of(object).bounds, scene.objects[object].transform);
+      radii.push_back(box.valid() ? glm::length(box.half_size()) : 0.0);
+    }
+    const auto at = static_cast<std::ptrdiff_t>(radii.size() * 9 / 10);
+    std::nth_element(radii.begin(), radii.begin() + at, radii.end());
+    return radii[static_cast<std::size_t>(at)];
+  }
 
   void tighten(const Frame& frame) {
     const std::span<const SpatialNode> nodes = structure().nodes();
@@ -85,7 +103,8 @@ class OccludeeTree {
     }
   }
 
-  FollowedStructure<Structure> followed_;
+  typename Structure::Limits limits_;
+  std::optional<FollowedStructure<Structure>> followed_;
   bool stale_ = true;             // the structure has changed since the boxes were made
   std::vector<Aabb> tight_;       // by node
   std::vector<NodeIndex> order_;  // memory of tighten()

@@ -1,14 +1,22 @@
 #include "algorithms/depth/pyramid_buffer.h"
 
 namespace vislab::depth_culling {
+namespace {
+
+// Fewer are asked one by one.
+constexpr int few_tiles = 16;
+
+}  // namespace
 
 bool PyramidBuffer::start(const Frame& frame) {
   if (!buffer_.start(frame)) return false;
   frustum_ = frustum_of(frame.camera);
+  rays_.emplace(buffer_.raster().window(), setup_.coverage);
   const Viewport& size = buffer_.raster().viewport();
   if (size != size_) {
     size_ = size;
     const TileStore& tiles = buffer_.raster().tiles();
+    texels_before_ = texels_touched();
     pyramid_.emplace(tiles.tiles_x(), tiles.tiles_y());
   }
   pyramid_->clear(static_cast<float>(buffer_.raster().window().nearness(frame.camera.lens.far_m)));
@@ -50,17 +58,22 @@ BoxVerdict PyramidBuffer::look_at(const Aabb& box, BoxWindow& place) const {
 }
 
 bool PyramidBuffer::hides(const BoxWindow& place) const {
-  const DepthRaster& raster = buffer_.raster();
+  const TileStore& store = buffer_.raster().tiles();
   const TexelRect tiles{place.x0 / tile_size, place.y0 / tile_size, (place.x1 - 1) / tile_size + 1,
                         (place.y1 - 1) / tile_size + 1};
+  if ((tiles.x1 - tiles.x0) * (tiles.y1 - tiles.y0) <= few_tiles) {
+    return hides_rectangle(store, place);
+  }
   return pyramid_->nearer_everywhere(tiles, place.nearness, [&](int x, int y) {
     const BoxWindow part{std::max(place.x0, x * tile_size), std::max(place.y0, y * tile_size),
                          std::min(place.x1, (x + 1) * tile_size),
                          std::min(place.y1, (y + 1) * tile_size), place.nearness};
-    // A tile that is asked about as a whole is decided already.
-    if (part.x1 - part.x0 == tile_size && part.y1 - part.y0 == tile_size) return false;
-    return raster.hides(part);
+    return hides_rectangle(store, part);
   });
+}
+
+bool PyramidBuffer::hides_silhouette_of(const Aabb& box, const BoxWindow& place) const {
+  return hides_silhouette(buffer_.raster().tiles(), place, rays_->planes_of(box));
 }
 
 }  // namespace vislab::depth_culling

@@ -2,10 +2,11 @@
 // boxes of any size.
 //
 // Idea: the rasteriser knows the farthest value of each tile, and these are the pyramid's finest
-//   level. A box is compared with few texels from the top down; only in tiles that its rectangle
-//   covers partly, and that the pyramid does not decide, pixels are looked at.
+//   level. A box's rectangle is compared with few texels from the top down; only in tiles that
+//   these do not decide, pixels are looked at. What is visible by its rectangle is asked again by
+//   its silhouette and its own depths (box_silhouette.h).
 // Guarantee: a box that is hidden would change no pixel of the frame's image: every pixel that it
-//   may cover is surely nearer (box_window.h), exactly so for the rectangle.
+//   may cover is surely nearer (box_window.h).
 // Cost: drawing as DepthRaster; keeping the pyramid O(tiles of the rectangles drawn into); a
 //   question 100 operations and O(undecided tiles).
 // Source: Greene, Kass, Miller 1993.
@@ -54,10 +55,13 @@ class PyramidBuffer {
   /// All of the buffer, where the place of something drawn is not known.
   BoxWindow everywhere() const;
 
-  /// Where a box lies, and whether it is hidden. `place` is set if it is visible or hidden.
+  /// Where a box lies, and whether its rectangle is hidden. `place` is set if it is visible or
+  /// hidden.
   BoxVerdict look_at(const Aabb& box, BoxWindow& place) const;
-  /// Is the box hidden whose place is known?
+  /// Is a rectangle hidden?
   bool hides(const BoxWindow& place) const;
+  /// Is a box hidden whose rectangle is not?
+  bool hides_silhouette_of(const Aabb& box, const BoxWindow& place) const;
 
   /// How many pixels of the frame a rectangle of the buffer stands for.
   double frame_pixels(const BoxWindow& place) const {
@@ -68,7 +72,9 @@ class PyramidBuffer {
     return static_cast<std::uint64_t>(size_.width) * static_cast<std::uint64_t>(size_.height);
   }
   /// Of the pyramid, read and written so far.
-  std::uint64_t texels_touched() const { return pyramid_ ? pyramid_->texels_touched() : 0; }
+  std::uint64_t texels_touched() const {
+    return texels_before_ + (pyramid_ ? pyramid_->texels_touched() : 0);
+  }
   std::size_t bytes() const { return buffer_.bytes() + (pyramid_ ? pyramid_->bytes() : 0); }
 
  private:
@@ -77,7 +83,9 @@ class PyramidBuffer {
   FrameBuffer<DepthRaster> buffer_;
   Viewport size_{0, 0};  // of the buffer
   std::optional<DepthPyramid> pyramid_;
+  std::uint64_t texels_before_ = 0;  // touched in pyramids of other sizes
   Frustum frustum_;
+  std::optional<PixelRays> rays_;
 };
 
 }  // namespace vislab::depth_culling

@@ -21,7 +21,11 @@ CullerInfo tree_culler_info(const char* name, const char* hierarchy) {
       ParameterSpec::integer("leaf_size", 8, 1, 1024, "objects", build,
                              "nodes with so many objects are not divided; greater tests more "
                              "objects one by one, smaller more nodes"),
-      scale_parameter(), draw_order_parameter(),
+      scale_parameter(),
+      draw_order_parameter(),
+      ParameterSpec::boolean("silhouettes", true, query,
+                             "objects whose rectangle is visible are asked again by the silhouette "
+                             "and the depths of their box, pixel by pixel"),
       ParameterSpec::boolean("sleep", true, query,
                              "whether it stops for a while when hiding does not pay; without, "
                              "frames without occlusion cost what they cost")};

@@ -12,6 +12,7 @@
 //   was drawn in earlier calls stays in it.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -42,6 +43,7 @@ class TreeCuller : public ICuller {
         tree_(limits),
         scale_(read_scale(values)),
         sleeps_(values.boolean("sleep")),
+        silhouettes_(values.boolean("silhouettes")),
         keys_(read_draw_order(values)),
         budget_(values) {}
 
@@ -60,7 +62,8 @@ class TreeCuller : public ICuller {
       list->reserve(scene.object_count());
     }
     order_.reserve(scene.object_count());
-    stack_.reserve(1024);
+    queue_.reserve(1024);
+    first_node_ = static_cast<std::uint32_t>(scene.object_count());
     triangles_an_object_ =
         static_cast<double>(scene.triangle_count()) / static_cast<double>(scene.object_count());
   }
@@ -116,7 +119,7 @@ class TreeCuller : public ICuller {
     return meshes_.bytes() + tree_.bytes() + (buffer_ ? buffer_->bytes() : 0) + asleep_.bytes() +
            offered_.bytes() + drawn_.bytes() + seen_before_.bytes() + order_.bytes() +
            (seen_.capacity() + seen_before_list_.capacity() + kept_.capacity()) * sizeof(ObjectId) +
-           stack_.capacity() * sizeof(Item) + draws_.capacity() * sizeof(RasterDraw) +
+           queue_.capacity() * sizeof(Item) + draws_.capacity() * sizeof(RasterDraw) +
            drawn_places_.capacity() * sizeof(BoxWindow);
   }
 
@@ -132,7 +135,8 @@ class TreeCuller : public ICuller {
 
   std::vector<ObjectId>& kept() { return kept_; }
 
-  /// Is an object hidden by now that was not when its place was found?
+  /// Is an object hidden by now that was not when its place was found? By its rectangle: another
+  /// look at silhouettes would cost more than it saves.
   bool hides_now(const BoxWindow& place) {
     ++work_.queries;
     const bool hidden = buffer_->hides(place);
@@ -162,12 +166,13 @@ class TreeCuller : public ICuller {
   /// The object is drawn by the next draw_now(), if it is large enough, the budget allows it, and
   /// it has not been drawn in this frame.
   void draw_later(ObjectId object, BoxVerdict verdict, const BoxWindow& place, const Frame& frame) {
-    const BoxWindow where = verdict == BoxVerdict::undecided ? buffer_->everywhere() : place;
+    const BoxWindow where = verdict == BoxVerdict::undecided ? everywhere() : place;
     const std::uint32_t triangles = scene_->triangle_count(object);
     if (drawn_.contains(object) || !budget_.take(buffer_->frame_pixels(where), triangles)) return;
     drawn_.insert(object);
     draws_.push_back(meshes_.of(object, frame));
     drawn_places_.push_back(where);
+    waiting_px_ += buffer_->frame_pixels(where);
     work_.drawn_triangles += triangles;
   }
 
@@ -176,20 +181,42 @@ class TreeCuller : public ICuller {
     if (draws_.empty()) return false;
     buffer_->draw(draws_);
     if (draws_.size() > few_draws) {
-      buffer_->build_pyramid();
+      build_pyramid();
     } else {
-      for (const BoxWindow& place : drawn_places_) buffer_->update_pyramid(place);
+      for (const BoxWindow& place : drawn_places_) follow(place);
     }
     draws_.clear();
     drawn_places_.clear();
+    waiting_px_ = 0.0;
     return true;
   }
 
-  /// Walks all candidates that are not hidden or outside by themselves or by a node: see(object,
-  /// verdict, place) in the order of the dial, node by node; and after_node() after the objects of
-  /// each node.
-  template <typename See, typename AfterNode>
-  void walk(const Frame& frame, const Candidates& candidates, See&& see, AfterNode&& after_node) {
+  /// Draws now if what waits covers a good part of the image: what comes later will meet it.
+  /// Returns whether anything was drawn.
+  bool draw_if_much() {
+    return waiting_px_ * much_of_the_image >= buffer_->frame_pixels(everywhere()) && draw_now();
+  }
+
+  /// Walks all candidates that are not hidden or outside by themselves or by a node, in the order
+  /// of the dial: see(object, verdict, place).
+  template <typename See>
+  void walk(const Frame& frame, const Candidates& candidates, See&& see) {
+    const auto see_object = [&](ObjectId object) {
+      BoxWindow place;
+      const Aabb& box = frame.objects.bounds[object];
+      BoxVerdict verdict = look_at(box, place);
+      if (silhouettes_ && verdict == BoxVerdict::visible &&
+          buffer_->hides_silhouette_of(box, place)) {
+        verdict = BoxVerdict::hidden;
+      }
+      if (verdict == BoxVerdict::outside) {
+        ++outside_;
+      } else if (verdict == BoxVerdict::hidden) {
+        if (everything_) ++work_.hidden_objects;
+      } else {
+        see(object, verdict, place);
+      }
+    };
     if (!everything_ && few_offered_) {
       order_.clear();
       for_each_object_run(candidates, frame, [&](std::span<const ObjectId> run) {
@@ -197,40 +224,56 @@ class TreeCuller : public ICuller {
           order_.add(keys_.of(frame.objects.bounds[object], object), object);
         }
       });
-      see_each(frame, see, after_node);
+      order_.sort();
+      for (const ObjectOrder::Place& next : order_.places()) see_object(next.object);
       return;
     }
-    see_objects(tree_.structure().unplaced(), frame, see, after_node);
-    const std::span<const SpatialNode> nodes = tree_.structure().nodes();
-    stack_.assign(1, {0.0F, Structure::root});
-    while (!stack_.empty()) {
-      const SpatialStructure::NodeIndex node = stack_.back().node;
-      stack_.pop_back();
-      const Aabb& box = tree_.box(node);
-      if (box.empty()) continue;
-      BoxWindow place;
-      const BoxVerdict verdict = look_at(box, place);
-      if (verdict == BoxVerdict::hidden && everything_) {
-        work_.hidden_objects += tree_.count_below(node);
+    queue_.clear();
+    push_objects(tree_.structure().unplaced(), frame);
+    push_node(SpatialStructure::root);
+    while (!queue_.empty()) {
+      std::ranges::pop_heap(queue_, later);
+      const std::uint32_t id = queue_.back().id;
+      queue_.pop_back();
+      if (id < first_node_) {
+        see_object(id);
+      } else {
+        open(id - first_node_, frame);
       }
-      if (verdict == BoxVerdict::outside || verdict == BoxVerdict::hidden) continue;
-      see_objects(tree_.structure().objects_at(node), frame, see, after_node);
-      push_children(nodes[node]);
     }
   }
 
  private:
   using NodeIndex = SpatialStructure::NodeIndex;
+  /// What waits to be looked at: an object by its id, node n as first_node_ + n.
   struct Item {
     float key;
-    NodeIndex node;
+    std::uint32_t id;
   };
 
   static constexpr std::uint64_t no_frame = ~std::uint64_t{0};
   /// Beyond so many draws at once the pyramid is built anew.
   static constexpr std::size_t few_draws = 16;
+  static constexpr double much_of_the_image = 8.0;
   /// Lists shorter than this part of what is shown are sorted and tested one by one.
   static constexpr std::size_t short_list_part = 16;
+
+  void build_pyramid() {
+    buffer_->build_pyramid();
+    build_waits_ = false;
+  }
+
+  /// Things of which it is not known where they are in the image come first, several of them. The
+  /// pyramid is built once for them all; until then it knows less, and is right.
+  void follow(const BoxWindow& drawn) {
+    if (drawn == everywhere()) {
+      build_waits_ = true;
+    } else if (build_waits_) {
+      build_pyramid();
+    } else {
+      buffer_->update_pyramid(drawn);
+    }
+  }
 
   BoxVerdict look_at(const Aabb& box, BoxWindow& place) {
     ++work_.queries;
@@ -245,6 +288,7 @@ class TreeCuller : public ICuller {
     frame_ = frame.index;
     budget_.start();
     drawn_.clear();
+    build_waits_ = false;
     std::swap(seen_, seen_before_list_);
     seen_.clear();
     seen_before_.clear();
@@ -267,55 +311,42 @@ class TreeCuller : public ICuller {
     return count;
   }
 
-  template <typename See, typename AfterNode>
-  void see_objects(std::span<const ObjectId> objects, const Frame& frame, See& see,
-                   AfterNode& after_node) {
-    if (objects.empty()) return;
-    order_.clear();
+  /// Looks at a node; if something in it may be visible, what is in it is to be looked at.
+  void open(NodeIndex node, const Frame& frame) {
+    BoxWindow place;
+    const BoxVerdict verdict = look_at(tree_.box(node), place);
+    if (verdict == BoxVerdict::hidden && everything_) {
+      work_.hidden_objects += tree_.count_below(node);
+    }
+    if (verdict == BoxVerdict::outside || verdict == BoxVerdict::hidden) return;
+    push_objects(tree_.structure().objects_at(node), frame);
+    const SpatialNode& opened = tree_.structure().nodes()[node];
+    for (std::uint32_t i = 0; i < opened.child_count; ++i) push_node(opened.first_child + i);
+  }
+
+  void push_objects(std::span<const ObjectId> objects, const Frame& frame) {
     for (const ObjectId object : objects) {
-      if (!everything_ && !offered_.contains(object)) continue;
-      order_.add(keys_.of(frame.objects.bounds[object], object), object);
-    }
-    see_each(frame, see, after_node);
-  }
-
-  template <typename See, typename AfterNode>
-  void see_each(const Frame& frame, See& see, AfterNode& after_node) {
-    order_.sort();
-    for (const ObjectOrder::Place& next : order_.places()) {
-      BoxWindow place;
-      const BoxVerdict verdict = look_at(frame.objects.bounds[next.object], place);
-      if (verdict == BoxVerdict::outside) {
-        ++outside_;
-      } else if (verdict == BoxVerdict::hidden) {
-        if (everything_) ++work_.hidden_objects;
-      } else {
-        see(next.object, verdict, place);
-      }
-    }
-    after_node();
-  }
-
-  /// The first of the order comes out of the stack first.
-  void push_children(const SpatialNode& node) {
-    const std::size_t mark = stack_.size();
-    for (std::uint32_t i = 0; i < node.child_count; ++i) {
-      const NodeIndex child = node.first_child + i;
-      const Aabb& box = tree_.box(child);
-      if (box.empty()) continue;
-      const Item item{keys_.of(box, child), child};
-      std::size_t at = stack_.size();
-      stack_.push_back(item);
-      for (; at > mark && stack_[at - 1].key < item.key; --at) stack_[at] = stack_[at - 1];
-      stack_[at] = item;
+      if (everything_ || offered_.contains(object)) push(frame.objects.bounds[object], object);
     }
   }
+  void push_node(NodeIndex node) {
+    if (!tree_.box(node).empty()) push(tree_.box(node), first_node_ + node);
+  }
+  void push(const Aabb& box, std::uint32_t id) {
+    queue_.push_back({keys_.of(box, id), id});
+    std::ranges::push_heap(queue_, later);
+  }
+  static bool later(const Item& a, const Item& b) {
+    return a.key != b.key ? a.key > b.key : a.id > b.id;
+  }
+  BoxWindow everywhere() const { return buffer_->everywhere(); }
 
   CullerInfo info_;
   const Scene* scene_ = nullptr;
   OccludeeTree<Structure> tree_;
   int scale_;
   bool sleeps_;
+  bool silhouettes_;
   DrawKeys keys_;
   OccluderBudget budget_;
   OccluderMeshes meshes_;
@@ -323,6 +354,7 @@ class TreeCuller : public ICuller {
   Worth worth_;
   FrustumWalk asleep_;
   double triangles_an_object_ = 0.0;
+  std::uint32_t first_node_ = 0;
 
   std::uint64_t frame_ = no_frame;          // that seen_ and the buffer belong to
   std::vector<ObjectId> seen_;              // visible in this frame, so far
@@ -337,9 +369,11 @@ class TreeCuller : public ICuller {
   std::size_t outside_ = 0;  // objects found outside one by one
   std::vector<ObjectId> kept_;
   ObjectOrder order_;
-  std::vector<Item> stack_;
+  std::vector<Item> queue_;  // a heap
   std::vector<RasterDraw> draws_;
   std::vector<BoxWindow> drawn_places_;
+  bool build_waits_ = false;
+  double waiting_px_ = 0.0;  // of the frame, by boxes, not drawn yet
   Worth::Work work_;
 
   std::uint64_t queries_ = 0;

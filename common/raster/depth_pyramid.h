@@ -57,7 +57,7 @@ class BasicDepthPyramid {
       h = std::max(Rules::halved(h), 1);
     }
     texels_.resize(first);
-    clear(std::numeric_limits<float>::lowest());
+    std::ranges::fill(texels_, std::numeric_limits<float>::lowest());
   }
 
   int level_count() const { return static_cast<int>(levels_.size()); }
