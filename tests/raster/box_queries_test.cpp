@@ -419,13 +419,15 @@ TEST(BoxQueries, KeepWhatIsNotValidHoldsTheEyeOrCrossesTheNearPlane) {
   EXPECT_EQ(visible_of(queries, raster), std::vector<std::uint64_t>{0b111111});
 }
 
-TEST(BoxQueries, MayHaveNoBoxes) {
+TEST(BoxQueries, OfAnEmptyImageSeeWhatIsBeforeTheFarPlane) {
   DepthRaster raster({1, 1}, {});
   raster.begin(camera_at({0.0, 0.0, 0.0}, {0.0, 0.0, -1.0}));
   BoxQueries queries({});
   EXPECT_TRUE(visible_of(queries, raster).empty());
-  BoxQueries one(std::vector<Aabb>{{{-1.0F, -1.0F, -9.0F}, {1.0F, 1.0F, -8.0F}}});
-  EXPECT_EQ(visible_of(one, raster), std::vector<std::uint64_t>{1});
+  BoxQueries some(std::vector<Aabb>{{{-1.0F, -1.0F, -9.0F}, {1.0F, 1.0F, -8.0F}},
+                                    {{-200.0F, -200.0F, -299.9F}, {200.0F, 200.0F, -299.0F}},
+                                    {{-200.0F, -200.0F, -302.0F}, {200.0F, 200.0F, -300.1F}}});
+  EXPECT_EQ(visible_of(some, raster), std::vector<std::uint64_t>{0b011});
 }
 
 }  // namespace
