@@ -4,6 +4,9 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <utility>
 
 #include "common/raster/setup_kernel.h"
 #include "common/raster/tile_kernel.h"
@@ -13,8 +16,31 @@ namespace {
 
 /// Blocks that are drawn at once: they stay in the innermost caches.
 constexpr std::size_t blocks_at_once = 8;
+/// Fewer are drawn in the order that they come in.
+constexpr std::size_t clusters_to_sort = 16;
 /// Clusters that a task of a thread sets up.
 constexpr std::size_t clusters_at_once = 64;
+
+/// Nearest first, about: what is drawn later then is dropped by the headers of tiles. One pass over
+/// bins whose width is a sixteenth of their depth.
+void sort_near_first(float least_depth, std::vector<ClusterDraw>& clusters,
+                     std::vector<ClusterDraw>& sorted) {
+  constexpr std::uint32_t bins = 512;
+  constexpr int dropped_bits = 19;
+  const auto bits_of = [](float depth) { return std::bit_cast<std::uint32_t>(depth); };
+  const std::uint32_t base = bits_of(least_depth) >> dropped_bits;
+  const auto bin = [&](const ClusterDraw& cluster) {
+    const float depth = least_depth + std::max(cluster.beyond_near, 0.0F);
+    return std::min((bits_of(depth) >> dropped_bits) - base, bins - 1);
+  };
+  std::array<std::uint32_t, bins> first{};
+  for (const ClusterDraw& cluster : clusters) ++first[bin(cluster)];
+  std::uint32_t sum = 0;
+  for (std::uint32_t& count : first) count = std::exchange(sum, sum + count);
+  sorted.resize(clusters.size());
+  for (const ClusterDraw& cluster : clusters) sorted[first[bin(cluster)]++] = cluster;
+  clusters.swap(sorted);
+}
 
 /// The window's rows for a draw, which many clusters may share.
 class Rows {
@@ -38,7 +64,7 @@ struct DepthRaster::Work {
   explicit Work(int threads) : arena(threads), parts(1) {}
 
   tbb::task_arena arena;
-  std::vector<ClusterDraw> clusters;
+  std::vector<ClusterDraw> clusters, sorted;
   std::vector<SetupScratch> parts;
 };
 
@@ -62,6 +88,11 @@ std::size_t DepthRaster::draw(std::span<const RasterDraw> draws) {
   std::vector<ClusterDraw>& clusters = work_->clusters;
   clusters.clear();
   find_clusters(ClusterPlanes(window_), draws, clusters);
+  // With ids the first drawn keeps a tie.
+  if (!options_.ids && clusters.size() >= clusters_to_sort) {
+    const auto near_m = static_cast<float>(std::max(window_.camera().lens.near_m, 1e-3));
+    sort_near_first(near_m, clusters, work_->sorted);
+  }
   if (options_.threads > 1 && clusters.size() > clusters_at_once) return draw_parallel(draws);
   SetupScratch& scratch = work_->parts.front();
   scratch.drawn = 0;

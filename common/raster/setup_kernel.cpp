@@ -33,58 +33,69 @@ constexpr std::size_t int_lanes = HWY_MIN(HWY_LANES(std::int32_t), 16);
 
 HWY_INLINE Vector set(double value) { return hn::Set(Doubles(), value); }
 
+/// Centre and half size of the box of a cluster's box in the world; half sizes are enlarged by more
+/// than what rounding may do to both.
+struct WorldBox {
+  double center[3], half[3];
+};
+
+HWY_INLINE WorldBox world_box(const glm::dmat4x3& m, const RasterCluster& cluster) {
+  constexpr double slack = 1e-9;
+  WorldBox box;
+  for (int i = 0; i < 3; ++i) {
+    const double x = m[0][i] * cluster.center.x, y = m[1][i] * cluster.center.y;
+    const double z = m[2][i] * cluster.center.z;
+    const double half = std::abs(m[0][i]) * cluster.half_size.x +
+                        std::abs(m[1][i]) * cluster.half_size.y +
+                        std::abs(m[2][i]) * cluster.half_size.z;
+    box.center[i] = (x + y) + (z + m[3][i]);
+    box.half[i] = half + slack * (half + std::abs(box.center[i]) + std::abs(m[3][i]));
+  }
+  return box;
+}
+
 HWY_ATTR void find(const ClusterPlanes& planes, std::span<const RasterDraw> draws,
                    std::vector<ClusterDraw>& out) {
   const Doubles d;
-  // The tests are of exact arithmetic's results by this much at most, relative to their terms.
-  const auto slack = set(1e-9);
   constexpr std::size_t vectors = ClusterPlanes::lanes / double_lanes;
+  Vector x[vectors], y[vectors], z[vectors], w[vectors];
+  for (std::size_t v = 0; v < vectors; ++v) {
+    x[v] = hn::Load(d, planes.x.data() + v * double_lanes);
+    y[v] = hn::Load(d, planes.y.data() + v * double_lanes);
+    z[v] = hn::Load(d, planes.z.data() + v * double_lanes);
+    const auto constant = hn::Load(d, planes.d.data() + v * double_lanes);
+    w[v] = hn::MulAdd(hn::Abs(constant), set(1e-9), constant);
+  }
+  constexpr std::size_t near_plane = ClusterPlanes::lanes - 1;
   for (const RasterDraw& draw : draws) {
-    const glm::dmat4x3& m = *draw.transform;
-    // The planes in the mesh's frame.
-    Vector x[vectors], y[vectors], z[vectors], w[vectors], w_terms[vectors];
-    for (std::size_t v = 0; v < vectors; ++v) {
-      const auto px = hn::Load(d, planes.x.data() + v * double_lanes);
-      const auto py = hn::Load(d, planes.y.data() + v * double_lanes);
-      const auto pz = hn::Load(d, planes.z.data() + v * double_lanes);
-      const auto pd = hn::Load(d, planes.d.data() + v * double_lanes);
-      const auto column = [&](int c) HWY_ATTR {
-        return hn::MulAdd(px, set(m[c].x), hn::MulAdd(py, set(m[c].y), hn::Mul(pz, set(m[c].z))));
-      };
-      x[v] = column(0);
-      y[v] = column(1);
-      z[v] = column(2);
-      const auto tx = hn::Mul(px, set(m[3].x));
-      const auto ty = hn::Mul(py, set(m[3].y));
-      const auto tz = hn::Mul(pz, set(m[3].z));
-      w[v] = hn::Add(hn::Add(tx, ty), hn::Add(tz, pd));
-      w_terms[v] = hn::Add(hn::Add(hn::Abs(tx), hn::Abs(ty)), hn::Add(hn::Abs(tz), hn::Abs(pd)));
-    }
+    if (draw.count == 0) continue;
     const auto clusters = draw.mesh->clusters();
     const std::uint32_t after = draw.first + draw.count;
-    if (draw.count == 0) continue;
     for (std::size_t c = draw.first / RasterCluster::greatest_size; c < clusters.size(); ++c) {
       const RasterCluster& cluster = clusters[c];
       if (cluster.first_triangle >= after) break;
+      const WorldBox box = world_box(*draw.transform, cluster);
       bool outside = false;
       for (std::size_t v = 0; v < vectors; ++v) {
-        const auto cx = hn::Mul(x[v], set(cluster.center.x));
-        const auto cy = hn::Mul(y[v], set(cluster.center.y));
-        const auto cz = hn::Mul(z[v], set(cluster.center.z));
-        const auto extent =
-            hn::MulAdd(hn::Abs(x[v]), set(cluster.half_size.x),
-                       hn::MulAdd(hn::Abs(y[v]), set(cluster.half_size.y),
-                                  hn::Mul(hn::Abs(z[v]), set(cluster.half_size.z))));
-        const auto at = hn::Add(hn::Add(cx, cy), hn::Add(cz, w[v]));
-        const auto terms = hn::Add(hn::Add(hn::Abs(cx), hn::Abs(cy)),
-                                   hn::Add(hn::Add(hn::Abs(cz), extent), w_terms[v]));
-        const auto greatest = hn::MulAdd(terms, slack, hn::Add(at, extent));
+        const auto at = hn::MulAdd(
+            x[v], set(box.center[0]),
+            hn::MulAdd(y[v], set(box.center[1]), hn::MulAdd(z[v], set(box.center[2]), w[v])));
+        const auto greatest =
+            hn::MulAdd(hn::Abs(x[v]), set(box.half[0]),
+                       hn::MulAdd(hn::Abs(y[v]), set(box.half[1]),
+                                  hn::MulAdd(hn::Abs(z[v]), set(box.half[2]), at)));
         outside = outside || !hn::AllFalse(d, hn::Lt(greatest, hn::Zero(d)));
       }
       if (outside) continue;
       const std::uint32_t first = std::max(draw.first, cluster.first_triangle);
       const std::uint32_t end = std::min(after, cluster.first_triangle + cluster.triangle_count);
-      out.push_back({&draw, &cluster, first, end - first});
+      const double beyond_near = planes.x[near_plane] * box.center[0] +
+                                 planes.y[near_plane] * box.center[1] +
+                                 planes.z[near_plane] * box.center[2] + planes.d[near_plane] -
+                                 std::abs(planes.x[near_plane]) * box.half[0] -
+                                 std::abs(planes.y[near_plane]) * box.half[1] -
+                                 std::abs(planes.z[near_plane]) * box.half[2];
+      out.push_back({&draw, &cluster, first, end - first, static_cast<float>(beyond_near)});
     }
   }
 }

@@ -56,6 +56,7 @@ struct ClusterDraw {
   const RasterDraw* draw = nullptr;
   const RasterCluster* cluster = nullptr;
   std::uint32_t first = 0, count = 0;  // triangles of the mesh
+  float beyond_near = 0.0F;            // the least of its box, metres along the view, about
 };
 
 /// Appends the clusters of the draws that may have a part in the window.
