@@ -12,6 +12,23 @@ namespace {
 constexpr double margin_px = 1.0 / 32.0;
 constexpr double relative_margin = 1.0 / 1'048'576.0;
 
+/// Do all corners surely lie beyond one and the same side of the image? Also for corners behind the
+/// eye.
+bool beyond_a_side(const WindowTransform& window, const std::array<WindowPoint, 8>& corners) {
+  const double width = window.viewport().width, height = window.viewport().height;
+  int left = 0, right = 0, below = 0, above = 0;
+  for (const WindowPoint& corner : corners) {
+    const double w = window.perspective() ? corner.depth : 1.0;
+    const double error_x = relative_margin * (std::abs(corner.x) + std::abs(width * w));
+    const double error_y = relative_margin * (std::abs(corner.y) + std::abs(height * w));
+    left += corner.x < -error_x ? 1 : 0;
+    right += corner.x - width * w > error_x ? 1 : 0;
+    below += corner.y < -error_y ? 1 : 0;
+    above += corner.y - height * w > error_y ? 1 : 0;
+  }
+  return left == 8 || right == 8 || below == 8 || above == 8;
+}
+
 }  // namespace
 
 BoxPlace project_box(const WindowTransform& window, const Aabb& box, Coverage coverage,
@@ -32,7 +49,9 @@ BoxPlace project_box(const WindowTransform& window, const Aabb& box, Coverage co
   if (greatest_depth + depth_error < lens.near_m) return BoxPlace::outside;
   const double least_seen = least_depth - depth_error;
   if (least_seen > lens.far_m) return BoxPlace::outside;
-  if (!(least_seen > lens.near_m)) return BoxPlace::undecided;
+  if (!(least_seen > lens.near_m)) {
+    return beyond_a_side(window, corners) ? BoxPlace::outside : BoxPlace::undecided;
+  }
   for (const WindowPoint& corner : corners) {
     const double w = window.perspective() ? corner.depth : 1.0;
     const double x = corner.x / w;
