@@ -135,14 +135,24 @@ class CommandLine {
     add_json(sub);
   }
   void add_show() {
-    CLI::App* const sub = verb("show", "a picture of a frame: from the eye and from outside",
-                               [this] { return show(lab_, show_); });
-    sub->add_option("--culler", show_.culler)->required();
+    CLI::App* const sub = verb(
+        "show", "a picture of a frame: a culler's choice, or how much lies one behind the other",
+        [this] {
+          if (show_.culler.empty() == show_.depth_complexity.empty()) {
+            throw InputError("show takes either --culler or --depth-complexity");
+          }
+          return show_.culler.empty() ? show_depth_complexity(lab_, show_, json_)
+                                      : show(lab_, show_);
+        });
+    sub->add_option("--culler", show_.culler, "seen from the eye and from outside");
+    sub->add_option("--depth-complexity", show_.depth_complexity,
+                    "a heat map of rays, polygons or transparent, and the figures of all three");
     sub->add_option("--scene", show_.scene)->required();
     sub->add_option("--path", show_.path, "name or file of a camera path");
     sub->add_option("--frame", show_.frame)->check(CLI::NonNegativeNumber)->capture_default_str();
     sub->add_option("--resolution", show_.resolution)->capture_default_str();
     sub->add_option("-o,--output", show_.output, "PNG file")->required();
+    add_json(sub);
   }
   void add_compare() {
     CLI::App* const sub =

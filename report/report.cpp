@@ -27,8 +27,9 @@ const Program chromium{"chromium", "chromium"};
 constexpr std::chrono::seconds time_limit{60};
 
 /// The report's parts in their order; each is templates/NAME.md.
-constexpr const char* parts[] = {"front",  "floor",    "guide",   "scenes",  "published",
-                                 "sweeps", "controls", "methods", "metrics", "measurement"};
+constexpr const char* parts[] = {"front",    "floor",     "depth",    "guide",
+                                 "scenes",   "published", "surfaces", "sweeps",
+                                 "controls", "methods",   "metrics",  "measurement"};
 
 /// A folder for work in progress, gone with this object.
 class WorkFolder {

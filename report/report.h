@@ -10,6 +10,7 @@
 #include "experiments/analysis/break_points.h"
 #include "experiments/analysis/published.h"
 #include "experiments/analysis/summary.h"
+#include "experiments/show/depth_complexity_picture.h"
 
 namespace vislab {
 
@@ -25,6 +26,14 @@ struct ReportInput {
   std::function<std::string(const BlockSummary& block, const CellSummary& cell,
                             const std::filesystem::path& file)>
       picture;
+  /// Writes a picture of the images that a block's hidden-surface algorithms painted, beside
+  /// truth's, to `file` (PNG); returns a caption. Empty function: no pictures.
+  std::function<std::string(const BlockSummary& block, const std::filesystem::path& file)>
+      surface_picture;
+  /// Measures the depth complexity of a block's middle frame by all definitions, and writes a heat
+  /// map by rays to `file` unless that is empty. Empty function: no section on it.
+  std::function<DepthComplexityTable(const BlockSummary& block, const std::filesystem::path& file)>
+      depth_complexity;
 };
 
 /// Writes index.html and report.pdf into `folder` (made if missing). Both appear only when whole.

@@ -9,6 +9,7 @@
 #include "common/scene/error.h"
 #include "report/chart.h"
 #include "report/comparison_sections.h"
+#include "report/depth_section.h"
 #include "report/finding.h"
 #include "report/format.h"
 #include "report/method_fields.h"
@@ -320,9 +321,12 @@ Fields report_fields(const ReportInput& input, const std::string& verdict_templa
     scenes.push_back(std::move(scene));
   }
   fields.flag("has_floors", !floors.empty());
+  add_depth_fields(input, folder, fields);
   fields.lists["guides"] = guide_fields(input.blocks);
   fields.lists["published"] = published_fields(input.published, input.blocks);
   fields.flag("has_published", !fields.lists["published"].empty());
+  fields.lists["surfaces"] = surface_fields(input, folder);
+  fields.flag("has_surfaces", !fields.lists["surfaces"].empty());
   fields.lists["sweeps"] = sweep_fields(input.sweeps);
   fields.flag("has_sweeps", !fields.lists["sweeps"].empty());
   fields.lists["controls"] = control_fields(input);

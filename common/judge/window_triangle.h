@@ -3,6 +3,7 @@
 
 #include <array>
 #include <glm/glm.hpp>
+#include <span>
 
 #include "common/geometry/camera.h"
 
@@ -25,6 +26,10 @@ class WindowTriangle {
   /// Planar depth, metres, of the triangle's plane there; not finite if it is seen edge-on.
   double depth(const glm::dvec2& window_px) const;
 
+  /// The corners of what is left, window position in pixels, in order round it either way.
+  std::span<const glm::dvec2> corners() const {
+    return {corners_.data(), static_cast<std::size_t>(count_)};
+  }
   /// Box around it in the window, pixels; min > max if empty.
   glm::dvec2 min() const { return min_; }
   glm::dvec2 max() const { return max_; }

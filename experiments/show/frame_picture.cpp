@@ -65,15 +65,8 @@ void write_frame_picture(const Scene& scene, const Frame& frame, const FrameTrut
   write_png(file, render_picture(input));
 }
 
-struct StoredPictures::Loaded {
-  Scene scene;
-  Path path;
-};
-
-StoredPictures::StoredPictures(std::filesystem::path results, DataFolders folders)
-    : results_(std::move(results)), folders_(std::move(folders)) {}
-
-StoredPictures::~StoredPictures() = default;
+StoredPictures::StoredPictures(std::filesystem::path results, StoredScenes& scenes)
+    : results_(std::move(results)), scenes_(&scenes) {}
 
 std::string StoredPictures::write(const BlockSummary& block, const CellSummary& cell,
                                   const std::filesystem::path& file) {
@@ -83,20 +76,7 @@ std::string StoredPictures::write(const BlockSummary& block, const CellSummary& 
   const std::optional<CellVerdicts> verdicts = store.load_verdicts(*stored, judge_source_hash());
   if (!verdicts) throw InputError("cell " + cell.id + " has not been judged");
 
-  if (!loaded_ || loaded_->scene.content_hash() != block.scene_hash ||
-      loaded_->path.content_hash() != block.path_hash) {
-    LoadedScene loaded = load_scene(stored->scene_source, folders_);
-    loaded_ = std::make_unique<Loaded>();
-    loaded_->scene = std::move(loaded.scene);
-    loaded_->path =
-        load_path(stored->path_source.empty() ? loaded.default_path : stored->path_source,
-                  loaded_->scene, block.viewport, block.frames, folders_);
-    if (loaded_->scene.content_hash() != block.scene_hash ||
-        loaded_->path.content_hash() != block.path_hash) {
-      throw InputError("scene " + block.scene + " or its path has changed since it was measured");
-    }
-  }
-
+  const StoredScene& loaded = scenes_->of(block, cell.id);
   std::size_t best = 0;
   for (std::size_t i = 1; i < verdicts->frames.size(); ++i) {
     const Verdict& a = verdicts->frames[i];
@@ -112,11 +92,11 @@ std::string StoredPictures::write(const BlockSummary& block, const CellSummary& 
     throw InputError("the truth of cell " + cell.id + " is missing; run the matrix again");
 
   const std::string where = block.scene + ", " + cell.culler + ", frame " + std::to_string(best);
-  SceneState state(loaded_->scene);
-  for_each_frame(loaded_->path, state, block.viewport,
+  SceneState state(loaded.scene);
+  for_each_frame(loaded.path, state, block.viewport,
                  [&](std::size_t index, const Frame& frame, const Changes&) {
                    if (index != best) return;
-                   write_frame_picture(loaded_->scene, frame, *truth,
+                   write_frame_picture(loaded.scene, frame, *truth,
                                        store.load_set(stored->frames[best].set),
                                        verdicts->frames[best], cell.granularity, where, file);
                  });

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <string>
 
 #include "common/judge/metrics.h"
 #include "common/scene/library.h"
 #include "experiments/analysis/summary.h"
+#include "experiments/show/stored_scene.h"
 
 namespace vislab {
 
@@ -21,8 +21,8 @@ void write_frame_picture(const Scene& scene, const Frame& frame, const FrameTrut
 /// Pictures of measured cells, from what the results hold.
 class StoredPictures {
  public:
-  StoredPictures(std::filesystem::path results, DataFolders folders);
-  ~StoredPictures();
+  /// `scenes` outlive this.
+  StoredPictures(std::filesystem::path results, StoredScenes& scenes);
 
   /// Draws the frame of a cell that tells most: the one with the most false pixels, or else the one
   /// with the most triangles culled. Returns a caption that names the frame. Throws InputError if
@@ -31,11 +31,8 @@ class StoredPictures {
                     const std::filesystem::path& file);
 
  private:
-  struct Loaded;
-
   std::filesystem::path results_;
-  DataFolders folders_;
-  std::unique_ptr<Loaded> loaded_;  // the scene and path of the last picture
+  StoredScenes* scenes_;
 };
 
 }  // namespace vislab

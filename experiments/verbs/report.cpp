@@ -4,12 +4,36 @@
 #include <tuple>
 
 #include "common/scene/error.h"
+#include "experiments/run/path_run.h"
+#include "experiments/show/depth_complexity_picture.h"
 #include "experiments/show/frame_picture.h"
+#include "experiments/show/surface_pictures.h"
 #include "experiments/verbs/present_results.h"
 #include "experiments/verbs/sweep_results.h"
 #include "experiments/verbs/verbs.h"
 
 namespace vislab {
+namespace {
+
+DepthComplexityTable stored_depth_complexity(StoredScenes& scenes, const BlockSummary& block,
+                                             const std::filesystem::path& file) {
+  if (block.cells.empty()) throw InputError("block " + block.scene + " has no cell");
+  const StoredScene& stored = scenes.of(block, block.cells.front().id);
+  const auto middle = static_cast<std::size_t>(block.frames) / 2;
+  DepthComplexityTable table{};
+  SceneState state(stored.scene);
+  for_each_frame(stored.path, state, block.viewport,
+                 [&](std::size_t index, const Frame& frame, const Changes&) {
+                   if (index != middle) return;
+                   table = measure_depth_complexity(
+                       stored.scene, frame, DepthComplexity::rays,
+                       block.scene + ", depth complexity (rays), frame " + std::to_string(middle),
+                       file);
+                 });
+  return table;
+}
+
+}  // namespace
 
 int report(const Lab& lab, const std::filesystem::path& results,
            const std::filesystem::path& output) {
@@ -19,10 +43,17 @@ int report(const Lab& lab, const std::filesystem::path& results,
   input.sweeps = sweep_results(lab, results, cells);
   input.published = load_published(lab.published, lab.cullers);
   input.cullers = &lab.cullers;
-  StoredPictures pictures(results, lab.data);
+  StoredScenes scenes(results, lab.data);
+  StoredPictures pictures(results, scenes);
   input.picture = [&](const BlockSummary& block, const CellSummary& cell,
                       const std::filesystem::path& file) {
     return pictures.write(block, cell, file);
+  };
+  input.depth_complexity = [&](const BlockSummary& block, const std::filesystem::path& file) {
+    return stored_depth_complexity(scenes, block, file);
+  };
+  input.surface_picture = [&](const BlockSummary& block, const std::filesystem::path& file) {
+    return write_stored_surfaces(results, scenes, block, file);
   };
   write_report(input, lab.report, output);
   std::cerr << "wrote " << (output / "index.html").string() << " and "

@@ -6,9 +6,19 @@
 #include "experiments/matrix/resolution.h"
 #include "experiments/run/path_run.h"
 #include "experiments/show/frame_picture.h"
+#include "experiments/show/surface_pictures.h"
 #include "experiments/verbs/verbs.h"
 
 namespace vislab {
+
+std::size_t require_frame(const Path& path, int frame) {
+  const auto index = static_cast<std::size_t>(frame);
+  if (index >= path.frames.size()) {
+    throw InputError("--frame " + std::to_string(frame) + ": path " + path.name +
+                     " has frames 0 to " + std::to_string(path.frames.size() - 1));
+  }
+  return index;
+}
 
 int show(const Lab& lab, const ShowCall& call) {
   const std::unique_ptr<ICuller> culler = lab.cullers.make(call.culler);
@@ -17,11 +27,7 @@ int show(const Lab& lab, const ShowCall& call) {
   const Scene& scene = loaded.scene;
   Path path =
       load_path(call.path.empty() ? loaded.default_path : call.path, scene, viewport, 0, lab.data);
-  const auto last = static_cast<std::size_t>(call.frame);
-  if (last >= path.frames.size()) {
-    throw InputError("--frame " + std::to_string(call.frame) + ": path " + path.name +
-                     " has frames 0 to " + std::to_string(path.frames.size() - 1));
-  }
+  const std::size_t last = require_frame(path, call.frame);
   // A culler may live on what it saw before: it is given the whole path up to the frame.
   path.frames.resize(last + 1);
 
@@ -49,6 +55,14 @@ int show(const Lab& lab, const ShowCall& call) {
   frame.objects = state.view();
   const Granularity granularity = culler->info().granularity;
   const Verdict verdict = judge_set(frame, truth.frame(last), run.sets[last], granularity, caster);
+  if (!run.surfaces[last].empty()) {
+    write_surface_picture(scene, frame, truth.frame(last),
+                          {{lab.cullers.short_name(call.culler), run.surfaces[last]}},
+                          scene.name + ", frame " + std::to_string(last) + ": who owns each pixel",
+                          call.output);
+    std::cerr << "wrote " << call.output.string() << '\n';
+    return 0;
+  }
   write_frame_picture(
       scene, frame, truth.frame(last), run.sets[last], verdict, granularity,
       scene.name + ", " + lab.cullers.short_name(call.culler) + ", frame " + std::to_string(last),

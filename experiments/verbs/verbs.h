@@ -49,8 +49,13 @@ struct ShowCall {
   std::string resolution = "512x512";
   int frame = 0;
   std::filesystem::path output;
+  std::string depth_complexity;  // instead of a culler: rays, polygons or transparent
 };
 int show(const Lab& lab, const ShowCall& call);
+/// A heat map of a frame by that definition of depth complexity; prints the figures of all.
+int show_depth_complexity(const Lab& lab, const ShowCall& call, bool json);
+/// The index of a frame. Throws InputError if the path has no such frame.
+std::size_t require_frame(const Path& path, int frame);
 
 /// Two chains in every block of the results that has both.
 int compare(const Lab& lab, const std::string& a, const std::string& b,

@@ -213,6 +213,21 @@ TEST_F(BadInput, AnUnwritablePictureIsRefused) {
   EXPECT_EQ(result.exit_code, 2) << result.err;
 }
 
+TEST_F(BadInput, AnUnknownDepthComplexityNamesTheKnownAndNeedsNoCuller) {
+  const std::string picture = folder_.path() / "picture.png";
+  const ProgramResult unknown = run_vislab(
+      {"show", "--depth-complexity", "holes", "--scene", "box_field_tiny", "-o", picture});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_NE(unknown.err.find("transparent"), std::string::npos) << unknown.err;
+  const ProgramResult both = run_vislab({"show", "--depth-complexity", "rays", "--culler", "none",
+                                         "--scene", "box_field_tiny", "-o", picture});
+  EXPECT_EQ(both.exit_code, 2);
+  const ProgramResult late = run_vislab({"show", "--depth-complexity", "rays", "--scene",
+                                         "box_field_tiny", "--frame", "100000", "-o", picture});
+  EXPECT_EQ(late.exit_code, 2);
+  EXPECT_FALSE(fs::exists(picture));
+}
+
 TEST_F(BadInput, WrongCallsEndWithCodeTwo) {
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{},

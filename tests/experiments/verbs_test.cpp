@@ -109,6 +109,26 @@ TEST(Verbs, ExportCompareAndShowReadTheResultsOfARun) {
   EXPECT_GT(std::filesystem::file_size(picture), 1000U);
 }
 
+TEST(Verbs, DepthComplexityIsPicturedAndCountedByAllDefinitions) {
+  const TemporaryFolder folder;
+  const std::string picture = folder.path() / "depth.png";
+  const ProgramResult shown =
+      run_vislab({"show", "--depth-complexity", "polygons", "--scene", "plant_tiny", "--frame", "3",
+                  "--resolution", "64x48", "-o", picture, "--json"});
+  ASSERT_EQ(shown.exit_code, 0) << shown.err;
+  EXPECT_GT(std::filesystem::file_size(picture), 1000U);
+  const std::vector<nlohmann::json> rows = objects(shown.out);
+  ASSERT_EQ(rows.size(), 3U);
+  for (const nlohmann::json& row : rows) {
+    EXPECT_EQ(row.at("path"), "plant_tiny_walk");
+    EXPECT_GT(row.at("mean"), 0.0);
+    EXPECT_GE(row.at("max"), row.at("p95"));
+  }
+  EXPECT_EQ(rows[0].at("definition"), "rays");
+  EXPECT_LT(rows[0].at("mean"), rows[1].at("mean"));
+  EXPECT_LT(rows[2].at("mean"), rows[0].at("mean"));
+}
+
 TEST(Verbs, AFieldOfAMillionObjectsIsCulledWithoutDrawing) {
   const TemporaryFolder folder;
   const std::string results = folder.path() / "results";

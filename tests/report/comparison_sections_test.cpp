@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "common/scene/error.h"
+#include "report/depth_section.h"
 #include "report/sweep_chart.h"
 #include "report/sweep_section.h"
 #include "tests/report/fabricated.h"
@@ -182,6 +184,38 @@ TEST(PublishedSection, RowsWithoutCellsSaySoAndSourcesWithoutAnyAreLeftOut) {
   EXPECT_EQ(rows[1].values.at("scene"), R"(mixed\, still)");
   figures.rows.erase(figures.rows.begin());
   EXPECT_TRUE(published_fields({figures}, {block}).empty());
+}
+
+TEST(DepthSection, HasARowForEachSceneAndPathAndThePictureOfTheDeepest) {
+  ReportInput input;
+  for (const char* scene : {"flat", "deep", "flat", "gone"}) {
+    BlockSummary block;
+    block.scene = block.scene_hash = scene;
+    block.path = block.path_hash = "walk";
+    block.viewport = {512, 256};
+    block.frames = 9;
+    input.blocks.push_back(block);
+  }
+  std::vector<std::string> pictured;
+  input.depth_complexity = [&](const BlockSummary& block, const std::filesystem::path& file) {
+    if (block.scene == "gone") throw InputError("not there");
+    if (!file.empty()) pictured.push_back(block.scene + " " + file.string());
+    const double mean = block.scene == "deep" ? 30.0 : 1.5;
+    return DepthComplexityTable{{{mean, 40, 1200}, {50.0, 60, 70}, {0.5, 1, 2}}};
+  };
+  Fields fields;
+  add_depth_fields(input, "out", fields);
+  const auto& rows = fields.lists["depths"];
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[1].values.at("scene"), "deep");
+  EXPECT_EQ(rows[1].values.at("frame"), "4");
+  EXPECT_EQ(rows[1].values.at("rays"), "30.0 · 40 · 1,200");
+  EXPECT_EQ(pictured, std::vector<std::string>{"deep out/depth-complexity.png"});
+  EXPECT_EQ(fields.lists["has_depths"].size(), 1U);
+
+  Fields none;
+  add_depth_fields(ReportInput(), "out", none);
+  EXPECT_TRUE(none.lists["has_depths"].empty());
 }
 
 }  // namespace

@@ -156,9 +156,10 @@ TEST(Library, RefusesDescriptionsThatAreWrong) {
   EXPECT_TRUE(says(refused(folder, "description = \"nothing\"\n"), "exactly one of the tables"));
   EXPECT_TRUE(says(refused(folder, "[mesh]\nfile = \"a.off\"\n[quake3]\nfile = \"b.bsp\"\n"),
                    "exactly one of the tables"));
-  EXPECT_TRUE(says(refused(folder, "colour = 1\n[mesh]\nfile = \"a.off\"\n"),
-                   "`colour` is not a key; known: default_path, description, generator, mesh, "
-                   "objects, offset, quake3"));
+  EXPECT_TRUE(
+      says(refused(folder, "colour = 1\n[mesh]\nfile = \"a.off\"\n"),
+           "`colour` is not a key; known: default_path, description, generator, mesh, meshes, "
+           "objects, offset, quake3"));
   EXPECT_TRUE(says(refused(folder, "[mesh]\nflie = \"a.off\"\n"), "`file` is missing"));
   EXPECT_TRUE(says(refused(folder, "[mesh]\nfile = \"a.off\"\n"), "a.off does not exist"));
   EXPECT_TRUE(says(refused(folder, "[generator]\nkind = \"forest\"\n"),

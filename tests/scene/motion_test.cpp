@@ -285,5 +285,43 @@ TEST_F(MovingPaths, RefuseTablesThatAreWrong) {
   EXPECT_TRUE(says(refused("kind = \"churn\"\ncount = 2\nseed = -1\n"), "`seed` is wrong"));
 }
 
+TEST(Motion, OneObjectSlidesAtItsVelocityAndTurnsBackAtItsReach) {
+  const Scene scene = box_field(3);
+  const Motion motion{SlideMotion{1, {3.0, 0.0, 4.0}, 10.0}, 8.0, 1};  // 10 m in a quarter
+  const std::vector<Changes> changes = changes_of(motion, scene, quarters);
+  const glm::dvec3 built = scene.objects[1].transform[3];
+  const double way_m[] = {0.0, 10.0, 0.0, -10.0, 0.0};
+  for (std::size_t i = 1; i < quarters.size(); ++i) {
+    EXPECT_EQ(changes[i].moved, std::vector<ObjectId>{1});
+    const glm::dvec3 moved = changes[i].transforms[0][3] - built;
+    EXPECT_NEAR(glm::length(moved - glm::dvec3(0.6, 0.0, 0.8) * way_m[i]), 0.0, 1e-9) << i;
+  }
+  EXPECT_TRUE(changes[0].empty());
+}
+
+TEST(Motion, OneObjectIsHiddenAndShownInTurn) {
+  const Scene scene = box_field(3);
+  const Motion motion{ToggleMotion{2, 2.0}, 2.0, 1};  // a toggle in each quarter
+  const std::vector<Changes> changes = changes_of(motion, scene, quarters);
+  EXPECT_TRUE(changes[0].empty());
+  for (const std::size_t i : {1, 3}) EXPECT_EQ(changes[i].hidden, std::vector<ObjectId>{2});
+  for (const std::size_t i : {2, 4}) EXPECT_EQ(changes[i].shown, std::vector<ObjectId>{2});
+  SceneState state(scene);
+  for (const Changes& change : changes) state.apply(change);
+  EXPECT_EQ(state.view().shown.size(), 3U);
+}
+
+TEST(Motion, OnlyWhatIsThereSlidesOrToggles) {
+  const Scene scene = box_field(3);
+  EXPECT_TRUE(says(input_error([&] {
+                     changes_of({SlideMotion{3, {1.0, 0.0, 0.0}, 1.0}, 1.0, 1}, scene, quarters);
+                   }),
+                   "objects 0 to 2"));
+  EXPECT_TRUE(says(input_error([&] {
+                     changes_of({ToggleMotion{7, 1.0}, 1.0, 1}, scene, quarters);
+                   }),
+                   "object 7"));
+}
+
 }  // namespace
 }  // namespace vislab

@@ -331,7 +331,8 @@ TEST_F(Paths, EveryDescriptionInTheRepositoryLoads) {
     const std::string name = entry.path().stem().string();
     if (name == "quake_walk") continue;  // needs a Quake III world: see the real scenes
     SCOPED_TRACE(name);
-    EXPECT_EQ(load_path(name, ring, {512, 512}, 0, data).frames.size(), 60U);
+    EXPECT_GE(load_path(name, ring, {512, 512}, 0, data).frames.size(), 1U);
+    EXPECT_EQ(load_path(name, ring, {512, 512}, 60, data).frames.size(), 60U);
   }
 }
 

@@ -209,6 +209,16 @@ TEST(Apartment, IsWalkedThroughWithoutMeetingAnything) {
   }
 }
 
+TEST(Outdoor, JoinsItsFilesWithoutSkiesAndTwins) {
+  const Scene scene = load("outdoor");
+  EXPECT_EQ(scene.object_count(), 198U);
+  EXPECT_NEAR(scene.bounds().max.x - scene.bounds().min.x, 121.3, 0.1);
+  const Path path = load_path("outdoor_walk", scene, {512, 512}, 0, repository_data());
+  for (const PathFrame& frame : path.frames) {
+    EXPECT_TRUE(scene.bounds().contains(frame.camera.pose.eye));
+  }
+}
+
 TEST(MixedScene, HasTheModelsOfTheThesis) {
   const Scene scene = load("mixed");
   EXPECT_EQ(scene.object_count(), 8U);

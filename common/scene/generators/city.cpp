@@ -85,7 +85,7 @@ void add_indoor_box(Scene& scene, std::uint32_t buildings, Random& random) {
 
 void add_bridge(Scene& scene, const CityParameters& city, std::uint32_t number) {
   constexpr double building_height_m = 20.0;
-  constexpr glm::dvec3 half_deck(0.0, 0.75, 5.0);
+  constexpr glm::dvec3 half_deck(0.0, 0.75, 2.4);
   const double first = std::floor(0.5 * city.blocks_z) - (city.bridges - 1.0);
   const double street = first + 2.0 * number - 0.5 * city.blocks_z;
   const glm::dvec3 center(0.0, city.bridge_clearance * building_height_m + half_deck.y,

@@ -70,7 +70,8 @@ struct CityParameters {
 /// of 0.3 to 2 m; they rest on the ground, or, one in ten, hover at 5 to 60 m. They lie along the
 /// streets and keep 1 m from the middle of every street, so that a camera can walk there. Buildings
 /// come first, then street boxes, indoor boxes and bridges, and none of these changes those before
-/// it. A bridge is one deck of 10 m by 1.5 m along a whole street; bridges are two streets apart.
+/// it. A bridge is one deck, 4.8 m wide and 1.5 m thick, along a whole street; bridges are two
+/// streets apart.
 Scene make_city(const CityParameters& parameters);
 
 struct RoomRingParameters {

@@ -1,0 +1,67 @@
+#include "report/depth_section.h"
+
+#include <set>
+#include <tuple>
+
+#include "common/scene/error.h"
+#include "report/format.h"
+
+namespace vislab {
+namespace {
+
+Fields row_of(const BlockSummary& block, const DepthComplexityTable& table) {
+  Fields row;
+  row.values["scene"] = markdown_text(block.scene);
+  row.values["path"] = markdown_code(block.path);
+  row.values["frame"] = std::to_string(block.frames / 2);
+  row.values["size"] =
+      std::to_string(block.viewport.width) + " × " + std::to_string(block.viewport.height);
+  for (const DepthComplexity definition : depth_complexities) {
+    const DepthComplexityFigures& figures = table[static_cast<std::size_t>(definition)];
+    row.values[std::string(to_string(definition))] = format_number(figures.mean) + " · " +
+                                                     format_count(figures.p95) + " · " +
+                                                     format_count(figures.max);
+  }
+  return row;
+}
+
+}  // namespace
+
+void add_depth_fields(const ReportInput& input, const std::filesystem::path& folder,
+                      Fields& fields) {
+  auto& rows = fields.lists["depths"];
+  auto& pictures = fields.lists["depth_pictures"];
+  std::set<std::tuple<std::string, std::string, int, int>> known;
+  const BlockSummary* deepest = nullptr;
+  double greatest = 0.0;
+  for (const BlockSummary& block : input.blocks) {
+    if (!input.depth_complexity) break;
+    if (!known
+             .emplace(block.scene_hash, block.path_hash, block.viewport.width,
+                      block.viewport.height)
+             .second) {
+      continue;
+    }
+    try {
+      const DepthComplexityTable table = input.depth_complexity(block, {});
+      rows.push_back(row_of(block, table));
+      if (table[0].mean > greatest) {
+        greatest = table[0].mean;
+        deepest = &block;
+      }
+    } catch (const InputError&) {
+      continue;  // the scene's own section says why it cannot be had
+    }
+  }
+  if (deepest != nullptr) {
+    const std::string file = "depth-complexity.png";
+    input.depth_complexity(*deepest, folder / file);
+    Fields picture;
+    picture.values["file"] = file;
+    picture.values["scene"] = markdown_text(deepest->scene);
+    pictures.push_back(std::move(picture));
+  }
+  fields.flag("has_depths", !rows.empty());
+}
+
+}  // namespace vislab

@@ -1,0 +1,17 @@
+// The section on how much lies one behind the other in the scenes.
+#pragma once
+
+#include <filesystem>
+
+#include "report/report.h"
+#include "report/template.h"
+
+namespace vislab {
+
+/// Adds the fields of templates/depth.md: a row for each scene and path of the run, and a heat map,
+/// written into `folder`, of the one with the greatest mean by rays. Scenes that are no longer what
+/// was measured are left out; without any, the section says so.
+void add_depth_fields(const ReportInput& input, const std::filesystem::path& folder,
+                      Fields& fields);
+
+}  // namespace vislab
