@@ -3,7 +3,11 @@
 namespace vislab {
 
 WindowTransform::WindowTransform(const Camera& camera, const Viewport& viewport)
-    : camera_(camera), viewport_(viewport) {
+    : camera_(camera),
+      viewport_(viewport),
+      axes_{camera.pose.right, camera.pose.up, camera.pose.back},
+      scale_x_(viewport.width / (camera.lens.right - camera.lens.left)),
+      scale_y_(viewport.height / (camera.lens.top - camera.lens.bottom)) {
   const Lens& lens = camera.lens;
   constexpr double steps = 32.0 / 16'777'216.0;
   device_margin_ =
@@ -12,28 +16,33 @@ WindowTransform::WindowTransform(const Camera& camera, const Viewport& viewport)
 }
 
 WindowRows WindowTransform::mesh(const glm::dmat4x3& transform) const {
-  const Pose& pose = camera_.pose;
-  const glm::dmat3 to_camera = glm::transpose(glm::dmat3(pose.right, pose.up, pose.back));
-  return rows(to_camera * glm::dmat3(transform), to_camera * (transform[3] - pose.eye));
-}
-
-WindowRows WindowTransform::rows(const glm::dmat3& linear, const glm::dvec3& offset) const {
   const Lens& lens = camera_.lens;
-  const double scale_x = viewport_.width / (lens.right - lens.left);
-  const double scale_y = viewport_.height / (lens.top - lens.bottom);
-  WindowRows result;
-  for (int i = 0; i < 4; ++i) {
-    const glm::dvec3 column = i < 3 ? linear[i] : offset;
-    const double constant = i < 3 ? 0.0 : 1.0;
-    const auto at = static_cast<std::size_t>(i);
-    if (perspective()) {
-      result.x[at] = scale_x * (lens.near_m * column.x + lens.left * column.z);
-      result.y[at] = scale_y * (lens.near_m * column.y + lens.bottom * column.z);
-    } else {
-      result.x[at] = scale_x * (column.x - lens.left * constant);
-      result.y[at] = scale_y * (column.y - lens.bottom * constant);
+  const glm::dvec3 offset = transform[3] - camera_.pose.eye;
+  // By column: the camera's frame, then the window's. Plain arrays, which compilers vectorise.
+  std::array<std::array<double, 4>, 3> columns, camera;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto at = static_cast<int>(axis);
+    columns[axis] = {transform[0][at], transform[1][at], transform[2][at], offset[at]};
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const glm::dvec3& to = axes_[axis];
+    for (std::size_t i = 0; i < 4; ++i) {
+      camera[axis][i] = (to.x * columns[0][i] + to.y * columns[1][i]) + to.z * columns[2][i];
     }
-    result.depth[at] = -column.z;
+  }
+  constexpr std::array<double, 4> constant{0.0, 0.0, 0.0, 1.0};
+  WindowRows result;
+  const bool has_eye = perspective();
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double x = camera[0][i], y = camera[1][i], z = camera[2][i];
+    if (has_eye) {
+      result.x[i] = scale_x_ * (lens.near_m * x + lens.left * z);
+      result.y[i] = scale_y_ * (lens.near_m * y + lens.bottom * z);
+    } else {
+      result.x[i] = scale_x_ * (x - lens.left * constant[i]);
+      result.y[i] = scale_y_ * (y - lens.bottom * constant[i]);
+    }
+    result.depth[i] = -z;
   }
   return result;
 }

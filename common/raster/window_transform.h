@@ -59,10 +59,10 @@ class WindowTransform {
   double device_margin() const { return device_margin_; }
 
  private:
-  WindowRows rows(const glm::dmat3& linear, const glm::dvec3& offset) const;
-
   Camera camera_;
   Viewport viewport_;
+  std::array<glm::dvec3, 3> axes_;  // of the camera: right, up, back
+  double scale_x_, scale_y_;        // pixels by metre on the near plane
   double device_margin_ = 0.0;
   WindowRows world_;
 };
