@@ -2,6 +2,9 @@
 # benchmark.
 
 option(VISLAB_TESTS "Build the tests" ON)
+option(VISLAB_OPTIMISED_TESTS "Optimise the tests' own code as much as what they test" ON)
+option(VISLAB_BENCHMARKS "Build the micro-benchmarks" ON)
+option(VISLAB_PRECOMPILED_HEADERS "Read the headers that most files include only once" OFF)
 option(VISLAB_WARNINGS_AS_ERRORS "Treat compiler warnings as errors" OFF)
 
 set(CMAKE_CXX_STANDARD 20)
@@ -27,6 +30,28 @@ if(VISLAB_WARNINGS_AS_ERRORS)
 endif()
 target_include_directories(vislab_options INTERFACE "${PROJECT_SOURCE_DIR}")
 
+# One precompiled header for all targets, of the system's headers only: what changes with the sources is
+# not in it. A build without it (release) finds files that do not include what they use.
+if(VISLAB_PRECOMPILED_HEADERS)
+  file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/precompiled.cpp" CONTENT "")
+  add_library(vislab_precompiled STATIC "${PROJECT_BINARY_DIR}/precompiled.cpp")
+  target_link_libraries(vislab_precompiled PRIVATE vislab_options)
+  target_precompile_headers(vislab_precompiled PRIVATE
+    <algorithm> <array> <cmath> <cstdint> <cstring> <filesystem> <fstream> <functional> <limits> <map>
+    <memory> <numbers> <numeric> <optional> <set> <span> <sstream> <stdexcept> <string> <string_view>
+    <unordered_map> <utility> <variant> <vector> <glm/glm.hpp> <glm/mat4x3.hpp>)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(vislab_options INTERFACE -fpch-preprocess)  # for ccache
+  endif()
+endif()
+
+# vislab_precompile(TARGET): lets a target use the precompiled header, if there is one.
+function(vislab_precompile target)
+  if(VISLAB_PRECOMPILED_HEADERS)
+    target_precompile_headers(${target} REUSE_FROM vislab_precompiled)
+  endif()
+endfunction()
+
 # vislab_add_library(NAME SOURCES file... [PUBLIC library...] [PRIVATE library...])
 # A static library vislab_NAME with the lab's options; PUBLIC libraries appear in its headers.
 function(vislab_add_library name)
@@ -34,6 +59,7 @@ function(vislab_add_library name)
   add_library(vislab_${name} STATIC ${ARG_SOURCES})
   target_link_libraries(vislab_${name} PUBLIC ${ARG_PUBLIC} PRIVATE vislab_options ${ARG_PRIVATE})
   target_include_directories(vislab_${name} PUBLIC "${PROJECT_SOURCE_DIR}")
+  vislab_precompile(vislab_${name})
 endfunction()
 
 # vislab_add_culler_family(FAMILY CULLERS name... [SOURCES file...] [LIBRARIES library...]
@@ -100,6 +126,10 @@ function(vislab_add_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
   add_executable(test_${name} ${ARG_SOURCES})
   target_link_libraries(test_${name} PRIVATE vislab_options ${ARG_LIBRARIES} GTest::gtest_main)
+  vislab_precompile(test_${name})
+  if(NOT VISLAB_OPTIMISED_TESTS)
+    target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
   target_compile_definitions(test_${name} PRIVATE
     VISLAB_SOURCE_DIR="${PROJECT_SOURCE_DIR}" VISLAB_BINARY_DIR="${PROJECT_BINARY_DIR}")
   gtest_discover_tests(test_${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60

@@ -122,12 +122,14 @@ TEST_F(Run, GoesOnAfterBeingKilledAndLosesNothing) {
 
 TEST_F(Run, GivesTheSameAnswersAgainAndWithAnyNumberOfThreads) {
   const fs::path one = folder_.path() / "one";
-  const fs::path again = folder_.path() / "again";
   ASSERT_EQ(run_vislab(call("small", results(), {"--threads", "2"})).exit_code, 0);
-  ASSERT_EQ(run_vislab(call("small", again, {"--threads", "2"})).exit_code, 0);
   ASSERT_EQ(run_vislab(call("small", one, {"--threads", "1"})).exit_code, 0);
-  EXPECT_EQ(answers(results()), answers(again));
   EXPECT_EQ(answers(results()), answers(one));
+#ifndef __SANITIZE_ADDRESS__  // the sanitizers see nothing new in the same run again
+  const fs::path again = folder_.path() / "again";
+  ASSERT_EQ(run_vislab(call("small", again, {"--threads", "2"})).exit_code, 0);
+  EXPECT_EQ(answers(results()), answers(again));
+#endif
 }
 
 TEST_F(Run, KeepsFailedCellsWithTheirReason) {
@@ -147,7 +149,7 @@ TEST_F(Run, PutsDownATimeOutToItsCell) {
   const std::string heavy = folder_.write(
       "heavy.toml",
       "rounds = 1\ntimeout_s = 0.001\n[lists]\nculler = [\"occlusion.stop_and_wait\"]\n"
-      "scene = [\"city_tiny\"]\nresolution = [\"512x512\"]\nframes = [60]\n");
+      "scene = [\"city_tiny\"]\nresolution = [\"128x128\"]\nframes = [20]\n");
   EXPECT_EQ(run_vislab(call(heavy, results())).exit_code, 1);
   bool timed_out = false;
   for (const ResultCell& cell : cells()) {
@@ -184,7 +186,7 @@ TEST_F(Run, ForceLeavesWhatIsThereUntilThereIsSomethingBetter) {
 }
 
 TEST_F(Run, AnAnchorThatFailsBesideAnotherCellKeepsItsResult) {
-  const std::string lists = "scene = [\"city_tiny\"]\nresolution = [\"512x512\"]\nframes = [60]\n";
+  const std::string lists = "scene = [\"city_tiny\"]\nresolution = [\"128x128\"]\nframes = [20]\n";
   const std::string first =
       folder_.write("first.toml", "rounds = 1\n[lists]\nculler = [\"frustum.flat\"]\n" + lists);
   ASSERT_EQ(run_vislab(call(first, results())).exit_code, 0);

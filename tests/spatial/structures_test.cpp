@@ -164,6 +164,11 @@ TEST(EveryStructure, KeepsBrokenBoxesUnplacedAndNothingElseWhenBuilt) {
 }
 
 TEST(EveryStructure, LosesNothingInAHundredThousandChanges) {
+#ifdef __SANITIZE_ADDRESS__
+  constexpr int steps = 20'000;  // the sanitizers take ten times as long
+#else
+  constexpr int steps = 100'000;
+#endif
   for (const Kind& kind : kinds()) {
     SCOPED_TRACE(kind.name);
     const auto structure = kind.make(7, 4);
@@ -174,7 +179,7 @@ TEST(EveryStructure, LosesNothingInAHundredThousandChanges) {
     std::vector<bool> in(count, true);
     std::size_t inside = count;
     Random random(4);
-    for (int step = 0; step < 100'000; ++step) {
+    for (int step = 0; step < steps; ++step) {
       const auto object = static_cast<ObjectId>(random.below(count));
       if (!in[object]) {
         boxes[object] = some_box(random);
@@ -193,7 +198,7 @@ TEST(EveryStructure, LosesNothingInAHundredThousandChanges) {
         boxes[object] = {boxes[object].min + way, boxes[object].max + way};
         structure->move(object, boxes[object]);
       }
-      if (step % 5'000 == 0) {
+      if (step % (steps / 20) == 0) {
         structure->finish_changes();
         ASSERT_NO_THROW(structure->audit(boxes, inside)) << step;
       }
@@ -204,6 +209,11 @@ TEST(EveryStructure, LosesNothingInAHundredThousandChanges) {
 }
 
 TEST(EveryStructure, GivesItsMemoryBackToItself) {
+#ifdef __SANITIZE_ADDRESS__
+  constexpr int steps = 5'000;  // the sanitizers take ten times as long
+#else
+  constexpr int steps = 20'000;
+#endif
   for (const Kind& kind : kinds()) {
     SCOPED_TRACE(kind.name);
     const auto structure = kind.make(8, 4);
@@ -212,17 +222,17 @@ TEST(EveryStructure, GivesItsMemoryBackToItself) {
     std::vector<Aabb> boxes;
     for (std::size_t i = 0; i < count; ++i) boxes.push_back(cube(point(random, 100.0), 1.0F));
     structure->build(boxes);
-    const auto churn = [&](int steps) {
-      for (int step = 0; step < steps; ++step) {
+    const auto churn = [&](int moves) {
+      for (int step = 0; step < moves; ++step) {
         const auto object = static_cast<ObjectId>(random.below(count));
         boxes[object] = cube(point(random, 90.0), static_cast<float>(random.uniform(0.1, 2.0)));
         structure->move(object, boxes[object]);
       }
       structure->finish_changes();
     };
-    churn(20'000);
+    churn(steps);
     const std::size_t before = structure->bytes();
-    churn(100'000);
+    churn(5 * steps);
     EXPECT_LE(structure->bytes(), 2 * before);
   }
 }
