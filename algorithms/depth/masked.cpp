@@ -65,8 +65,8 @@ CullerInfo describe() {
       ParameterSpec::choice(
           "buffer", "exact", {"exact", "masked", "masked_volume"}, build,
           "a depth for each pixel, or two layers and a mask for each tile, joined by the paper's "
-          "rule of distances or by the volume they hide: a quarter of the work for each tile, and "
-          "less is found hidden, because boxes count as their rectangles"),
+          "rule of distances or by the volume they hide: less memory and work, and less is found "
+          "hidden, also because boxes then count as their rectangles"),
       depth_culling::scale_parameter(), depth_culling::draw_order_parameter()};
   for (ParameterSpec& spec : OccluderBudget::parameters()) {
     info.parameters.push_back(std::move(spec));

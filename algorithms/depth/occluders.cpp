@@ -18,7 +18,7 @@ std::size_t OccluderMeshes::bytes() const {
 std::vector<ParameterSpec> OccluderBudget::parameters() {
   constexpr auto stage = ParameterSpec::Stage::query;
   return {
-      ParameterSpec::real("occluder_px", 64.0, 0.0, 1e9, "pixels", stage,
+      ParameterSpec::real("occluder_px", 4.0, 0.0, 1e9, "pixels", stage,
                           "visible objects whose box covers fewer pixels of the image are not "
                           "drawn into the buffer; greater is cheaper and hides less"),
       ParameterSpec::integer("occluder_triangles", 1'000'000, 0, 1'000'000'000, "triangles", stage,
