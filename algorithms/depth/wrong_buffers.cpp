@@ -35,6 +35,8 @@ class NearPlaneProjected : public FullSize {
     const WindowTransform& window = raster().window();
     const BoxPlace right = project_box(window, box, Coverage::centres, out);
     if (right != BoxPlace::undecided || !box.valid() || !window.perspective()) return right;
+    const Viewport& size = window.viewport();
+    const glm::dvec2 middle(0.5 * size.width, 0.5 * size.height);
     glm::dvec2 low(INFINITY), high(-INFINITY);
     double nearest = INFINITY;
     for (int i = 0; i < 8; ++i) {
@@ -42,11 +44,11 @@ class NearPlaneProjected : public FullSize {
                                                  (i & 2) != 0 ? box.max.y : box.min.y,
                                                  (i & 4) != 0 ? box.max.z : box.min.z});
       const double w = std::max(std::abs(corner.depth), 1e-6);
-      low = glm::min(low, glm::dvec2(corner.x / w, corner.y / w));
-      high = glm::max(high, glm::dvec2(corner.x / w, corner.y / w));
+      const glm::dvec2 at = (glm::dvec2(corner.x, corner.y) - corner.depth * middle) / w + middle;
+      low = glm::min(low, at);
+      high = glm::max(high, at);
       nearest = std::min(nearest, w);
     }
-    const Viewport& size = window.viewport();
     const auto pixel = [](double at, int end) {
       return static_cast<int>(std::clamp(std::floor(at), 0.0, static_cast<double>(end)));
     };
@@ -74,12 +76,19 @@ class LooseBounds : public FullSize {
   }
 };
 
-/// Compares window depths in whole numbers, and takes equal ones for hidden.
+/// Compares window depths in whole numbers, and takes equal ones for hidden. Everything shown is
+/// drawn before anything is asked.
 class Quantised : public FullSize {
  public:
   using FullSize::FullSize;
 
  protected:
+  void begin(const Frame& frame) override {
+    for (const ObjectId object : frame.objects.shown) {
+      raster().draw(std::array{meshes().of(object, frame)});
+    }
+  }
+  void draw(ObjectId, const BoxWindow*, const Frame&) override {}
   bool hides(const BoxWindow& box) override {
     const std::int64_t asked = steps(box.nearness);
     for (int y = box.y0; y < box.y1; ++y) {

@@ -254,9 +254,12 @@ class SweepReader {
     if (const auto* node = root_.get("frames")) {
       settings_.frames = whole_number(*node, "frames", 0, 100000, file_);
     }
+    viewports_.assign(values_.size(), settings_.viewport);
     if (auto text = value_of<std::string>(root_, "resolution", "a text", file_)) {
       try {
-        settings_.viewport = parse_resolution(*text);
+        for (std::size_t i = 0; i < values_.size(); ++i) {
+          viewports_[i] = parse_resolution(replaced(*text, values_[i].text));
+        }
       } catch (const InputError& error) {
         throw InputError(place(file_, *root_.get("resolution")) + ": " + error.what());
       }
@@ -336,7 +339,7 @@ class SweepReader {
   void make_blocks() {
     toml::table scene = table_at(root_, "scene", file_);
     scene.insert("description", sweep_.description);
-    std::map<std::pair<std::string, std::string>, std::size_t> known;
+    std::map<std::tuple<std::string, std::string, int, int>, std::size_t> known;
     std::vector<std::vector<std::string>> chains;
     const std::vector<std::string> scenes = files_of(scene, "");
     std::vector<std::string> paths(values_.size());
@@ -345,8 +348,10 @@ class SweepReader {
       Block block = settings_;
       block.scene = scenes[i];
       block.path = paths[i];
+      block.viewport = viewports_[i];
       const auto [found, is_new] =
-          known.try_emplace({block.scene, block.path}, sweep_.blocks.size());
+          known.try_emplace({block.scene, block.path, block.viewport.width, block.viewport.height},
+                            sweep_.blocks.size());
       if (is_new) {
         block.label = sweep_.name + ": " + sweep_.dial.setting(i);
         sweep_.blocks.push_back(block);
@@ -364,19 +369,20 @@ class SweepReader {
       sweep_.blocks[i].cullers = with_anchors(chains[i], registry_);
     }
     for (std::size_t i = 0; i < values_.size(); ++i) {
-      sweep_.conditions.push_back(conditions_of(scenes[i], paths[i]));
+      sweep_.conditions.push_back(conditions_of(scenes[i], paths[i], viewports_[i]));
     }
   }
 
-  std::string conditions_of(const std::string& scene, const std::string& path) const {
+  std::string conditions_of(const std::string& scene, const std::string& path,
+                            const Viewport& viewport) const {
     std::ostringstream text;
     for (const std::string& name : {scene, path}) {
       const auto file = std::ranges::find(sweep_.files, fs::path(name), &SweepFile::file);
       if (file != sweep_.files.end()) text << file->text;
       text << '\n';
     }
-    text << settings_.viewport.width << 'x' << settings_.viewport.height << ' ' << settings_.frames
-         << ' ' << settings_.seed << ' ' << settings_.device;
+    text << viewport.width << 'x' << viewport.height << ' ' << settings_.frames << ' '
+         << settings_.seed << ' ' << settings_.device;
     return hash_text(text.str());
   }
 
@@ -388,6 +394,7 @@ class SweepReader {
   std::vector<DialValue> values_;
   std::vector<std::string> written_;  // the cullers as they stand in the file
   Block settings_;
+  std::vector<Viewport> viewports_;  // by value of the dial
   Sweep sweep_;
 };
 

@@ -4,7 +4,7 @@
 //   description = "…"
 //   failure = "F1"                 row of the failure atlas
 //   cullers = ["frustum.flat", "frustum.octree[depth=${dial}]"]
-//   resolution = "128x128"
+//   resolution = "128x128"         "${dial}x128" as well
 //   frames = 8                     0 = as many as the path has
 //   rounds, seed, threads, draw, timeout_s: as in a matrix
 //   [dial]
@@ -27,8 +27,8 @@
 //   source = "…"                   who reports the failure; the range is this lab's prediction
 //   because = "…"                  what the range follows from, in one sentence
 //
-// In the scene, the path and the cullers "${dial}" stands for the dial's value: alone in its quotes
-// for the number, within a longer text for its digits.
+// In the scene, the path, the cullers and the resolution "${dial}" stands for the dial's value:
+// alone in its quotes for the number, within a longer text for its digits.
 //
 // Without at_most and at_most_ratio the limit is: for false_px none at all, for approximate methods
 // 1 % of the pixels compared; for over, over_objects and times twice the first value; for all
@@ -87,7 +87,7 @@ struct Sweep {
   SweepDial dial;
   SweepLimit limit;
   std::vector<SweepMethod> methods;
-  /// Values of the dial that leave scene and path alike share a block.
+  /// Values of the dial that leave scene, path and resolution alike share a block.
   std::vector<Block> blocks;
   std::vector<std::size_t> block_of_value;
   /// The scenes and paths that the blocks name, and of a sweep that is not the lab's own its text.

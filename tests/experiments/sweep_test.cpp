@@ -56,6 +56,20 @@ TEST_F(SweepFileTest, EveryValueOfTheDialIsABlockWithASceneOfItsOwn) {
   EXPECT_EQ(count_of(sweep.blocks[0], "none"), 2U) << "with the control";
 }
 
+TEST_F(SweepFileTest, TheResolutionMayDependOnTheDial) {
+  const std::string widths =
+      "[dial]\nname = \"width\"\nunit = \"px\"\nvalues = [16, 17, 18, 19, 20, 21, 22, 23]\n";
+  const std::string field = "[scene.generator]\nkind = \"box_field\"\ncount = 20\n";
+  const Sweep sweep = load("resolution = \"${dial}x32\"\n" + head + widths + field);
+  ASSERT_EQ(sweep.blocks.size(), 8U);
+  EXPECT_EQ(sweep.blocks[3].viewport, (Viewport{19, 32}));
+  EXPECT_EQ(sweep.blocks[0].scene, sweep.blocks[3].scene);
+  EXPECT_NE(sweep.conditions[0], sweep.conditions[3]);
+  EXPECT_NE(refusal("resolution = \"${dial}x32\"\n" + head + dial + field).find("WIDTHxHEIGHT"),
+            std::string::npos)
+      << "half a pixel";
+}
+
 TEST_F(SweepFileTest, AGapAloneInItsQuotesBecomesTheNumberAsItWasWritten) {
   const Sweep sweep = load(head + dial + scene);
   const auto text_of = [&](std::size_t value) {
