@@ -11,8 +11,7 @@
 // Cost: O(nodes and objects not hidden by last frame's objects) questions, O(triangles drawn) for
 //   the buffer, O(tiles) for the pyramid, twice if anything appears.
 // Limits: as depth.hzb. In the first frame, and after a cut of the camera, the first pass has
-//   nothing to draw: all that is in the view passes it, and the second pass does the work,
-//   O(objects in the view).
+//   nothing to draw, and the second does the work.
 // Sources: Greene, Kass, Miller 1993 (temporal coherence by the list of visible objects); Haar and
 //   Aaltonen 2015, GPU-Driven Rendering Pipelines (two passes).
 
