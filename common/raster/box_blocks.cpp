@@ -30,6 +30,28 @@ ColumnView::Row row_of(const glm::dvec3& normal, double constant, const glm::dve
 
 }  // namespace
 
+bool BoxColumns::says_something(const Aabb& box) {
+  constexpr float greatest_coordinate = 1e12F;
+  bool small = box.valid();
+  for (int axis = 0; axis < 3; ++axis) {
+    small = small && std::abs(box.min[axis]) <= greatest_coordinate &&
+            std::abs(box.max[axis]) <= greatest_coordinate;
+  }
+  return small;
+}
+
+void BoxColumns::put(std::size_t column, const Aabb& new_box) {
+  const std::uint32_t bit = 1U << column;
+  present |= bit;
+  const bool plain = says_something(new_box);
+  always = plain ? always & ~bit : always | bit;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<int>(axis);
+    rows[axis][column] = plain ? new_box.min[i] : 0.0F;
+    rows[axis + 3][column] = plain ? new_box.max[i] : 0.0F;
+  }
+}
+
 ColumnView::ColumnView(const WindowTransform& window, Coverage coverage)
     : perspective(window.perspective()),
       near_m(round_up(window.camera().lens.near_m)),

@@ -18,6 +18,11 @@ struct alignas(64) BoxColumns {
   std::uint32_t present = 0;  // bit by column
   std::uint32_t always = 0;   // those of them that are never culled: their bounds say nothing
 
+  /// False for boxes that are not valid or reach beyond 10^12 m: they are `always`.
+  static bool says_something(const Aabb& box);
+  /// Puts a box into a column; it is then present.
+  void put(std::size_t column, const Aabb& box);
+
   Aabb box(std::size_t column) const {
     return {{rows[min_x][column], rows[min_y][column], rows[min_z][column]},
             {rows[max_x][column], rows[max_y][column], rows[max_z][column]}};

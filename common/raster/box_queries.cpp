@@ -10,41 +10,18 @@ namespace vislab {
 namespace {
 
 constexpr std::size_t width = BoxColumns::width;
-constexpr float greatest_coordinate = 1e12F;
-
-bool says_something(const Aabb& box) {
-  bool small = box.valid();
-  for (int axis = 0; axis < 3; ++axis) {
-    small = small && std::abs(box.min[axis]) <= greatest_coordinate &&
-            std::abs(box.max[axis]) <= greatest_coordinate;
-  }
-  return small;
-}
-
-void put(BoxColumns& block, std::size_t column, const Aabb& box) {
-  const std::uint32_t bit = 1U << column;
-  block.present |= bit;
-  const bool plain = says_something(box);
-  block.always = plain ? block.always & ~bit : block.always | bit;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto i = static_cast<int>(axis);
-    block.rows[axis][column] = plain ? box.min[i] : 0.0F;
-    block.rows[axis + 3][column] = plain ? box.max[i] : 0.0F;
-  }
-}
-
 }  // namespace
 
 BoxQueries::BoxQueries(std::span<const Aabb> boxes) : places_(boxes.size()) {
   Aabb domain;
   for (const Aabb& box : boxes) {
-    if (says_something(box)) domain.extend(glm::vec3(box.center()));
+    if (BoxColumns::says_something(box)) domain.extend(glm::vec3(box.center()));
   }
   std::vector<MortonKey> keys(boxes.size()), scratch;
   const MortonGrid grid(domain.empty() ? Aabb{glm::vec3(0.0F), glm::vec3(0.0F)} : domain);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const glm::vec3 center =
-        says_something(boxes[i]) ? glm::vec3(boxes[i].center()) : glm::vec3(0.0F);
+        BoxColumns::says_something(boxes[i]) ? glm::vec3(boxes[i].center()) : glm::vec3(0.0F);
     keys[i] = {grid.code(center), static_cast<std::uint32_t>(i)};
   }
   sort_by_code(keys, scratch);
@@ -56,7 +33,7 @@ BoxQueries::BoxQueries(std::span<const Aabb> boxes) : places_(boxes.size()) {
     const std::uint32_t id = keys[place].index;
     ids_[place] = id;
     places_[id] = static_cast<std::uint32_t>(place);
-    put(levels_[0][place / width], place % width, boxes[id]);
+    levels_[0][place / width].put(place % width, boxes[id]);
   }
   while (blocks > 1) {
     const std::size_t below = blocks;
@@ -75,12 +52,12 @@ void BoxQueries::enclose(std::size_t level, std::size_t block) {
     box.extend(from.box(static_cast<std::size_t>(std::countr_zero(left))));
   }
   if (from.always != 0) box = Aabb{};  // not valid: always looked into
-  put(above, block % width, box);
+  above.put(block % width, box);
 }
 
 void BoxQueries::update(std::uint32_t id, const Aabb& box) {
   std::size_t place = places_[id];
-  put(levels_[0][place / width], place % width, box);
+  levels_[0][place / width].put(place % width, box);
   for (std::size_t level = 0; level + 1 < levels_.size(); ++level) {
     place /= width;
     enclose(level, place);

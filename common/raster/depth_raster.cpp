@@ -66,6 +66,7 @@ struct DepthRaster::Work {
   tbb::task_arena arena;
   std::vector<ClusterDraw> clusters, sorted;
   std::vector<SetupScratch> parts;
+  std::vector<ColumnPlaces> places;
 };
 
 DepthRaster::DepthRaster(const Viewport& size, const RasterOptions& options)
@@ -164,10 +165,49 @@ std::size_t DepthRaster::draw_visible(std::span<const RasterDraw> draws,
     if (where.place == BoxPlace::outside) continue;
     if (where.place == BoxPlace::inside && hides(where.window)) continue;
     hidden[static_cast<std::size_t>(cluster.draw - draws.data())] = 0;
-    set_up_cluster(window_, options_.setup, options_.ids, r, cluster, scratch);
-    finish_blocks(scratch);
-    draw_blocks({scratch.blocks.data(), scratch.block_count}, tiles_, {});
-    scratch.block_count = 0;
+    draw_cluster(cluster, r);
+  }
+  return scratch.drawn;
+}
+
+void DepthRaster::draw_cluster(const ClusterDraw& cluster, const WindowRows& rows) {
+  SetupScratch& scratch = work_->parts.front();
+  set_up_cluster(window_, options_.setup, options_.ids, rows, cluster, scratch);
+  finish_blocks(scratch);
+  draw_blocks({scratch.blocks.data(), scratch.block_count}, tiles_, {});
+  scratch.block_count = 0;
+}
+
+std::size_t DepthRaster::draw_visible(std::span<const RasterDraw> draws,
+                                      std::span<const BoxColumns> boxes,
+                                      std::span<const std::uint32_t> order,
+                                      std::span<std::uint8_t> hidden) {
+  std::vector<ColumnPlaces>& places = work_->places;
+  places.resize(boxes.size());
+  const ColumnView view(window_, options_.setup.coverage);
+  for (std::size_t i = 0; i < boxes.size(); ++i) place_columns(view, boxes[i], places[i]);
+  const ClusterPlanes planes(window_);
+  SetupScratch& scratch = work_->parts.front();
+  scratch.drawn = 0;
+  for (const std::uint32_t i : order) {
+    const std::size_t column = i % BoxColumns::width;
+    const BoxColumns& box = boxes[i / BoxColumns::width];
+    const ColumnPlaces& place = places[i / BoxColumns::width];
+    hidden[i] = 1;
+    if (((place.undecided | box.always) >> column & 1U) == 0) {
+      if ((place.inside >> column & 1U) == 0 || hides(place.window(column))) continue;
+    }
+    hidden[i] = 0;
+    const RasterDraw& draw = draws[i];
+    std::vector<ClusterDraw>& clusters = work_->clusters;
+    clusters.clear();
+    find_clusters(planes, {&draw, 1}, clusters);
+    if (clusters.empty()) continue;
+    const WindowRows rows = window_.mesh(*draw.transform);
+    for (const ClusterDraw& cluster : clusters) {
+      transform_cluster(window_, rows, cluster, scratch, options_.setup.coverage, nullptr);
+      draw_cluster(cluster, rows);
+    }
   }
   return scratch.drawn;
 }
