@@ -13,7 +13,7 @@ Fields row_of(const BlockSummary& block, const DepthComplexityTable& table) {
   Fields row;
   row.values["scene"] = markdown_text(block.scene);
   row.values["path"] = markdown_code(block.path);
-  row.values["frame"] = std::to_string(block.frames / 2);
+  row.values["frame"] = std::to_string(block.frames / 3);
   row.values["size"] =
       std::to_string(block.viewport.width) + " × " + std::to_string(block.viewport.height);
   for (const DepthComplexity definition : depth_complexities) {

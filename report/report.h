@@ -30,8 +30,9 @@ struct ReportInput {
   /// truth's, to `file` (PNG); returns a caption. Empty function: no pictures.
   std::function<std::string(const BlockSummary& block, const std::filesystem::path& file)>
       surface_picture;
-  /// Measures the depth complexity of a block's middle frame by all definitions, and writes a heat
-  /// map by rays to `file` unless that is empty. Empty function: no section on it.
+  /// Measures the depth complexity of a block's frame after a third of its path by all definitions,
+  /// and writes a heat map by rays to `file` unless that is empty. Empty function: no section on
+  /// it.
   std::function<DepthComplexityTable(const BlockSummary& block, const std::filesystem::path& file)>
       depth_complexity;
 };

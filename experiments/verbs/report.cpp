@@ -19,15 +19,15 @@ DepthComplexityTable stored_depth_complexity(StoredScenes& scenes, const BlockSu
                                              const std::filesystem::path& file) {
   if (block.cells.empty()) throw InputError("block " + block.scene + " has no cell");
   const StoredScene& stored = scenes.of(block, block.cells.front().id);
-  const auto middle = static_cast<std::size_t>(block.frames) / 2;
+  const auto third = static_cast<std::size_t>(block.frames) / 3;
   DepthComplexityTable table{};
   SceneState state(stored.scene);
   for_each_frame(stored.path, state, block.viewport,
                  [&](std::size_t index, const Frame& frame, const Changes&) {
-                   if (index != middle) return;
+                   if (index != third) return;
                    table = measure_depth_complexity(
                        stored.scene, frame, DepthComplexity::rays,
-                       block.scene + ", depth complexity (rays), frame " + std::to_string(middle),
+                       block.scene + ", depth complexity (rays), frame " + std::to_string(third),
                        file);
                  });
   return table;

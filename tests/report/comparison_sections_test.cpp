@@ -208,7 +208,7 @@ TEST(DepthSection, HasARowForEachSceneAndPathAndThePictureOfTheDeepest) {
   const auto& rows = fields.lists["depths"];
   ASSERT_EQ(rows.size(), 2U);
   EXPECT_EQ(rows[1].values.at("scene"), "deep");
-  EXPECT_EQ(rows[1].values.at("frame"), "4");
+  EXPECT_EQ(rows[1].values.at("frame"), "3");
   EXPECT_EQ(rows[1].values.at("rays"), "30.0 · 40 · 1,200");
   EXPECT_EQ(pictured, std::vector<std::string>{"deep out/depth-complexity.png"});
   EXPECT_EQ(fields.lists["has_depths"].size(), 1U);
