@@ -201,7 +201,12 @@ std::size_t DepthRaster::draw_visible(std::span<const RasterDraw> draws,
     const RasterDraw& draw = draws[i];
     std::vector<ClusterDraw>& clusters = work_->clusters;
     clusters.clear();
-    find_clusters(planes, {&draw, 1}, clusters);
+    if (const auto of_mesh = draw.mesh->clusters(); of_mesh.size() == 1) {
+      // Its box is the draw's.
+      if (draw.count > 0) clusters.push_back({&draw, of_mesh.data(), draw.first, draw.count, 0.0F});
+    } else {
+      find_clusters(planes, {&draw, 1}, clusters);
+    }
     if (clusters.empty()) continue;
     const WindowRows rows = window_.mesh(*draw.transform);
     for (const ClusterDraw& cluster : clusters) {

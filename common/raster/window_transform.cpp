@@ -17,32 +17,24 @@ WindowTransform::WindowTransform(const Camera& camera, const Viewport& viewport)
 
 WindowRows WindowTransform::mesh(const glm::dmat4x3& transform) const {
   const Lens& lens = camera_.lens;
-  const glm::dvec3 offset = transform[3] - camera_.pose.eye;
-  // By column: the camera's frame, then the window's. Plain arrays, which compilers vectorise.
-  std::array<std::array<double, 4>, 3> columns, camera;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto at = static_cast<int>(axis);
-    columns[axis] = {transform[0][at], transform[1][at], transform[2][at], offset[at]};
-  }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const glm::dvec3& to = axes_[axis];
-    for (std::size_t i = 0; i < 4; ++i) {
-      camera[axis][i] = (to.x * columns[0][i] + to.y * columns[1][i]) + to.z * columns[2][i];
-    }
-  }
-  constexpr std::array<double, 4> constant{0.0, 0.0, 0.0, 1.0};
-  WindowRows result;
   const bool has_eye = perspective();
-  for (std::size_t i = 0; i < 4; ++i) {
-    const double x = camera[0][i], y = camera[1][i], z = camera[2][i];
+  WindowRows result;
+  for (int i = 0; i < 4; ++i) {
+    const glm::dvec3 column = i < 3 ? transform[i] : transform[3] - camera_.pose.eye;
+    const auto along = [&](const glm::dvec3& axis) {
+      return (axis.x * column.x + axis.y * column.y) + axis.z * column.z;
+    };
+    const double x = along(axes_[0]), y = along(axes_[1]), z = along(axes_[2]);
+    const auto at = static_cast<std::size_t>(i);
     if (has_eye) {
-      result.x[i] = scale_x_ * (lens.near_m * x + lens.left * z);
-      result.y[i] = scale_y_ * (lens.near_m * y + lens.bottom * z);
+      result.x[at] = scale_x_ * (lens.near_m * x + lens.left * z);
+      result.y[at] = scale_y_ * (lens.near_m * y + lens.bottom * z);
     } else {
-      result.x[i] = scale_x_ * (x - lens.left * constant[i]);
-      result.y[i] = scale_y_ * (y - lens.bottom * constant[i]);
+      const double constant = i < 3 ? 0.0 : 1.0;
+      result.x[at] = scale_x_ * (x - lens.left * constant);
+      result.y[at] = scale_y_ * (y - lens.bottom * constant);
     }
-    result.depth[i] = -z;
+    result.depth[at] = -z;
   }
   return result;
 }
