@@ -15,7 +15,7 @@ constexpr Color paper = {255, 255, 255};
 constexpr double margin = 16.0;
 constexpr double title_height = 40.0;
 constexpr double caption_height = 44.0;
-constexpr int most_columns = 3;
+constexpr int most_columns = 4;
 constexpr int panel_side = 512;  // about; at least one pixel a pixel
 
 /// Of the palette of Okabe and Ito (2008), without orange and vermillion.

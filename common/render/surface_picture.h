@@ -20,7 +20,7 @@ struct SurfacePanel {
   std::span<const std::uint8_t> wrong;  // by pixel, not 0 where it is marked; may be empty: none is
 };
 
-/// All panels in rows of three at most, pixels enlarged to whole squares where the images are
+/// All panels in rows of four at most, pixels enlarged to whole squares where the images are
 /// small. Objects differ by hue, their triangles by lightness; wrong pixels are vermillion, which
 /// no object is. Throws std::logic_error if sizes do not fit together.
 Image render_surface_picture(const Scene& scene, const Viewport& viewport, const std::string& title,

@@ -33,7 +33,8 @@ std::string write_stored_surfaces(const std::filesystem::path& results, StoredSc
   std::vector<ResultCell> cells;
   std::vector<std::uint64_t> wrong;  // by frame
   for (const CellSummary& summary : block.cells) {
-    if (!summary.judged || !summary.paints) continue;
+    // Negative controls are wrong nearly everywhere: their figures say enough.
+    if (!summary.judged || !summary.paints || summary.guarantee == Guarantee::erroneous) continue;
     std::optional<ResultCell> cell = store.load_cell(summary.id);
     if (!cell) throw InputError("cell " + summary.id + " is missing");
     const std::optional<CellVerdicts> verdicts = store.load_verdicts(*cell, judge_source_hash());
@@ -42,7 +43,7 @@ std::string write_stored_surfaces(const std::filesystem::path& results, StoredSc
     for (std::size_t i = 0; i < wrong.size(); ++i) wrong[i] += verdicts->surfaces[i].surface_px;
     cells.push_back(std::move(*cell));
   }
-  if (wrong.empty()) throw InputError("nothing on " + block.scene + " paints an image itself");
+  if (wrong.empty()) throw InputError("only wrong variants were measured on " + block.scene);
   const auto most = std::ranges::max_element(wrong);
   const std::size_t best =
       *most > 0 ? static_cast<std::size_t>(most - wrong.begin()) : wrong.size() / 2;

@@ -22,9 +22,10 @@ void write_surface_picture(const Scene& scene, const Frame& frame, const FrameTr
                            const std::vector<PaintedSurface>& surfaces, const std::string& title,
                            const std::filesystem::path& file);
 
-/// The same of what a block's hidden-surface algorithms painted, from what the results hold: of the
-/// frame in which they have most pixels wrong, or else of the middle one. Returns a caption. Throws
-/// InputError if something is missing, or if the scene is no longer the one that was measured.
+/// The same of what a block's hidden-surface algorithms painted, negative controls left out, from
+/// what the results hold: of the frame in which they have most pixels wrong, or else of the middle
+/// one. Returns a caption. Throws InputError if something is missing, or if the scene is no longer
+/// the one that was measured.
 std::string write_stored_surfaces(const std::filesystem::path& results, StoredScenes& scenes,
                                   const BlockSummary& block, const std::filesystem::path& file);
 

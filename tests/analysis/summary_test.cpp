@@ -139,6 +139,7 @@ TEST(Summary, AccuracyAddsUpOverTheFrames) {
   CellVerdicts verdicts;
   verdicts.frames = {make_verdict(), second};
   verdicts.images = {{0, 1}, {9, 2}};
+  verdicts.surfaces = {{3, 1}, {2, 0}};
   verdicts.floor_disputed_px = 21;
   verdicts.outside = {400, 100};
   verdicts.back_facing = {500, 50};
@@ -148,6 +149,8 @@ TEST(Summary, AccuracyAddsUpOverTheFrames) {
   const CellSummary cell = only_cell(judged);
   EXPECT_DOUBLE_EQ(cell.metric("excused_px"), 4.0);
   EXPECT_DOUBLE_EQ(cell.metric("disputed_image_px"), 3.0);
+  EXPECT_DOUBLE_EQ(cell.metric("surface_px"), 5.0);
+  EXPECT_DOUBLE_EQ(cell.metric("disputed_surface_px"), 1.0);
   EXPECT_DOUBLE_EQ(cell.metric("disputed_px"), 21.0) << "the floor, not what was lost";
   EXPECT_TRUE(cell.judged);
   EXPECT_TRUE(cell.drawn);

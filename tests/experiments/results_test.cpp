@@ -45,7 +45,7 @@ TEST(ResultCell, IsReadWithoutCostsIfItIsFromBeforeTheyWereMeasured) {
   nlohmann::json old = nlohmann::json::parse(to_json(sample_cell()));
   old.erase("costs");
   for (nlohmann::json& frame : old.at("frames")) {
-    for (const char* name : {"draws", "pieces", "one_sided"}) frame.erase(name);
+    for (const char* name : {"draws", "pieces", "one_sided", "surface"}) frame.erase(name);
   }
   const ResultCell back = parse_cell(old.dump(), "test").value();
   EXPECT_FALSE(back.costs.has_value());
@@ -68,6 +68,14 @@ TEST(ResultCell, IsJudgedAnewIfTheDeviceLeavesOutOtherBacks) {
   ResultCell other = cell;
   other.frames[0].one_sided = "set3";
   EXPECT_NE(answer_hash(cell), answer_hash(other));
+}
+
+TEST(ResultCell, IsJudgedAnewIfAnotherImageWasPainted) {
+  const ResultCell cell = sample_cell();
+  ResultCell other = cell;
+  other.frames[0].surface = "image";
+  EXPECT_NE(answer_hash(cell), answer_hash(other));
+  EXPECT_EQ(parse_cell(to_json(other), "test").value().frames[0].surface, "image");
 }
 
 TEST(ResultCell, EveryPartOfTheKeyChangesTheName) {
@@ -122,6 +130,22 @@ TEST(ResultStore, ASetComesBackAsItWas) {
     store.save_set(set.hash(), set);
     EXPECT_EQ(store.load_set(set.hash()), set);
   }
+}
+
+TEST(ResultStore, APaintedImageComesBackAsItWasAndADamagedOneIsRefused) {
+  const TemporaryFolder folder;
+  const ResultStore store = ResultStore::create(folder.path());
+  std::vector<TriangleId> owners(100, none_id);
+  owners[3] = 0;
+  owners[99] = 70'000;
+  const std::string hash = surface_hash(owners);
+  store.save_surface(hash, owners);
+  EXPECT_EQ(store.load_surface(hash), owners);
+  owners[3] = 1;
+  EXPECT_NE(surface_hash(owners), hash);
+  std::filesystem::rename(folder.path() / "images" / (hash + ".ids"),
+                          folder.path() / "images" / (surface_hash(owners) + ".ids"));
+  EXPECT_THROW(store.load_surface(surface_hash(owners)), InputError);
 }
 
 TEST(ResultStore, ADamagedSetIsRefused) {
