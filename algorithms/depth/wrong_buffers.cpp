@@ -25,10 +25,25 @@ class FullSize : public TestThenDraw {
   WrongSettings settings_;
 };
 
-/// Corners behind the eye are divided by |w|, as if they were before it.
-class NearPlaneProjected : public FullSize {
+/// Draws everything shown before anything is asked, as engines do that ask about depths of a
+/// frame that is finished.
+class AllDrawnFirst : public FullSize {
  public:
   using FullSize::FullSize;
+
+ protected:
+  void begin(const Frame& frame) override {
+    for (const ObjectId object : frame.objects.shown) {
+      raster().draw(std::array{meshes().of(object, frame)});
+    }
+  }
+  void draw(ObjectId, const BoxWindow*, const Frame&) override {}
+};
+
+/// Corners behind the eye are divided by |w|, as if they were before it.
+class NearPlaneProjected : public AllDrawnFirst {
+ public:
+  using AllDrawnFirst::AllDrawnFirst;
 
  protected:
   BoxPlace place(const Aabb& box, BoxWindow& out) override {
@@ -76,19 +91,12 @@ class LooseBounds : public FullSize {
   }
 };
 
-/// Compares window depths in whole numbers, and takes equal ones for hidden. Everything shown is
-/// drawn before anything is asked.
-class Quantised : public FullSize {
+/// Compares window depths in whole numbers, and takes equal ones for hidden.
+class Quantised : public AllDrawnFirst {
  public:
-  using FullSize::FullSize;
+  using AllDrawnFirst::AllDrawnFirst;
 
  protected:
-  void begin(const Frame& frame) override {
-    for (const ObjectId object : frame.objects.shown) {
-      raster().draw(std::array{meshes().of(object, frame)});
-    }
-  }
-  void draw(ObjectId, const BoxWindow*, const Frame&) override {}
   bool hides(const BoxWindow& box) override {
     const std::int64_t asked = steps(box.nearness);
     for (int y = box.y0; y < box.y1; ++y) {
