@@ -9,7 +9,7 @@
 //   centre, in exact arithmetic and on a device. Boxes through the near plane and those that are
 //   not valid, or reach beyond 10^12 m, are always visible. The same answers with every instruction
 //   set.
-// Cost: build O(n); a test O(what is visible + log n), at worst 20 ns a box. 30 bytes a box.
+// Cost: build O(n); a test O(what is visible + log n), at worst some 20 ns a box. 40 bytes a box.
 // Source: own; headers of tiles as in Greene, Kass, Miller 1993.
 #pragma once
 
