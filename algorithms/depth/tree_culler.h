@@ -254,7 +254,7 @@ class TreeCuller : public ICuller {
   static constexpr std::uint64_t no_frame = ~std::uint64_t{0};
   /// Beyond so many draws at once the pyramid is built anew.
   static constexpr std::size_t few_draws = 16;
-  static constexpr double much_of_the_image = 8.0;
+  static constexpr double much_of_the_image = 32.0;
   /// Lists shorter than this part of what is shown are sorted and tested one by one.
   static constexpr std::size_t short_list_part = 16;
 
