@@ -189,6 +189,53 @@ TEST(DepthRaster, EqualsBruteForceInAWideImage) {
   compare_with_brute_force({1024, 512}, 15, 60, 90);
 }
 
+TEST(DepthRaster, EqualsBruteForceWhereEdgesMeetPixelCentresAndDepthsTie) {
+  // Corners on a grid of half pixels, few depths: parallel to the image, doubled, some as squares.
+  Random random(21);
+  const Viewport size{67, 45};
+  Camera camera;
+  camera.lens = orthographic_lens(45.0, size.aspect(), 1.0, 100.0);
+  const auto place = [&](int range) {
+    return 0.5F * static_cast<float>(random.below(static_cast<std::uint64_t>(2 * range)));
+  };
+  for (int trial = 0; trial < 3 * trials; ++trial) {
+    Mesh mesh;
+    for (int i = 0; i < 60; ++i) {
+      const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+      const float z = -10.0F - static_cast<float>(random.below(3));
+      const float x = place(67) - 33.5F, y = place(45) - 22.5F, w = 0.5F + place(20),
+                  h = 0.5F + place(20);
+      const float skew = place(8);
+      mesh.positions.insert(
+          mesh.positions.end(),
+          {{x, y, z}, {x + w, y, z}, {x + w + skew, y + h, z}, {x + skew, y + h, z}});
+      // Both diagonals, from both ends.
+      const auto turn = static_cast<std::uint32_t>(random.below(4));
+      const auto corner = [&](std::uint32_t k) { return base + (k + turn) % 4; };
+      mesh.triangles.emplace_back(corner(0), corner(1), corner(2));
+      mesh.triangles.emplace_back(corner(0), corner(2), corner(3));
+      if (i % 3 == 0) std::swap(mesh.triangles.back().x, mesh.triangles.back().y);
+      if (i % 5 == 0) mesh.triangles.emplace_back(base + 1, base + 3, base);
+    }
+    const RasterMesh raster_mesh(mesh);
+    const glm::dmat4x3 identity(1.0);
+    const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+    const RasterDraw draw{&raster_mesh, &identity, 0, count, 0, trial % 2 == 1};
+    BruteForceRaster truth(size, {});
+    truth.begin(camera);
+    truth.draw({&draw, 1});
+    for (const std::string& target : simd_targets()) {
+      const SimdTargetScope scope(target);
+      DepthRaster raster(size, {{}, true, 1}), plain(size, {});
+      for (DepthRaster* one : {&raster, &plain}) {
+        one->begin(camera);
+        one->draw({&draw, 1});
+        expect_equal(*one, truth, size, target, one == &raster);
+      }
+    }
+  }
+}
+
 TEST(DepthRaster, IsClearedByANewFrame) {
   Random random(16);
   const Stage stage = random_stage(random, 100, 50);

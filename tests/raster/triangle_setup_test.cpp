@@ -62,6 +62,33 @@ TEST(TriangleSetup, FansCoverEveryPixelExactlyOnce) {
   }
 }
 
+TEST(TriangleSetup, TrianglesOnAGridOfPixelCentresCoverEveryPixelExactlyOnce) {
+  const Viewport size{40, 24};
+  const WindowTransform window(plain_camera(size), size);
+  std::vector<int> count(40 * 24, 0);
+  Random random(34);
+  for (int j = -1; j < 24; j += 3) {
+    for (int i = -1; i < 40; i += 5) {
+      const auto corner = [&](int right, int up) {
+        return at(i + 0.5 + 5 * right, j + 0.5 + 3 * up, 4.0);
+      };
+      const bool other = random.below(2) == 0;
+      for (const auto& t :
+           {std::array{corner(0, 0), corner(1, 0), other ? corner(1, 1) : corner(0, 1)},
+            std::array{corner(0, 1), corner(1, 1), other ? corner(0, 0) : corner(1, 0)}}) {
+        std::array<SetupTriangle, max_setup_pieces> pieces;
+        const SetupResult result = set_up_triangle(window, t, 0, {}, pieces);
+        for (int piece = 0; piece < result.count; ++piece) {
+          for_each_covered_pixel(pieces[static_cast<std::size_t>(piece)], [&](int x, int y, float) {
+            ++count[static_cast<std::size_t>(y * 40 + x)];
+          });
+        }
+      }
+    }
+  }
+  EXPECT_EQ(std::ranges::count(count, 1), 40 * 24);
+}
+
 struct Corners {
   std::array<WindowPoint, 3> p;
 };
