@@ -22,9 +22,10 @@
 namespace vislab {
 namespace {
 
-/// Larger fields are not drawn, and looked at in a few frames only: drawing and judging them would
-/// take all the time and say little about the culler.
-constexpr std::size_t largest_drawn_scene_objects = 100'000;
+/// Larger fields are not drawn, and looked at in a few frames only (the city of 100,000 small
+/// things, drawn in half a second, is not among them): drawing and judging them would take all the
+/// time and say little about the culler.
+constexpr std::size_t largest_drawn_scene_objects = 150'000;
 constexpr std::size_t most_frames_of_larger_scenes = 8;
 
 /// A cell of the block while it is being measured.
