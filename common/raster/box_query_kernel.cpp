@@ -222,12 +222,19 @@ class TilePixels {
 /// until it returns false.
 template <typename Function>
 HWY_INLINE bool for_open_tiles(const TileStore& tiles, const BoxWindow& r, Function&& f) {
-  const int last_x = (r.x1 - 1) / tile_size, last_y = (r.y1 - 1) / tile_size;
+  const Floats d;
+  const auto nearness = set(r.nearness);
+  const int first = r.x0 / tile_size, end = (r.x1 - 1) / tile_size + 1;
+  const int last_y = (r.y1 - 1) / tile_size;
   for (int y = r.y0 / tile_size; y <= last_y; ++y) {
-    for (int x = r.x0 / tile_size; x <= last_x; ++x) {
-      const std::size_t tile = tiles.index(x, y);
-      if (tiles.farthest()[tile] > r.nearness) continue;
-      if (!f(x, y, tile)) return false;
+    const float* row = tiles.farthest() + tiles.index(0, y);
+    for (int x = first; x < end; x += static_cast<int>(lanes)) {
+      std::uint32_t open = bits_of(hn::Le(hn::LoadU(d, row + x), nearness));
+      if (end - x < static_cast<int>(lanes)) open &= (1U << (end - x)) - 1;
+      for (; open != 0; open &= open - 1) {
+        const int at = x + std::countr_zero(open);
+        if (!f(at, y, tiles.index(at, y))) return false;
+      }
     }
   }
   return true;
