@@ -10,7 +10,7 @@
 #include <bit>
 #include <cmath>
 
-#include "common/geometry/rounding.h"
+#include "common/raster/places_of_bits.h"
 #include "common/raster/setup_constants.h"
 #include "common/simd/mask_bits-inl.h"
 
@@ -146,8 +146,16 @@ class SetUp {
       const auto in_doubt = hn::Or(hn::Le(area_0, error_0), hn::Lt(area_1, error_1));
       keep = hn::And(keep, hn::RebindMask(di, in_doubt));
     }
-    const auto faces = hn::Add(hn::Iota(di, 0), hn::Set(di, static_cast<std::int32_t>(first)));
-    return hn::CompressStore(faces, keep, di, out);
+    const auto base = hn::Set(di, static_cast<std::int32_t>(first));
+    if constexpr (int_lanes > 8) {
+      return hn::CompressStore(hn::Add(hn::Iota(di, 0), base), keep, di, out);
+    } else {
+      const hn::Rebind<std::uint8_t, Ints> du;
+      const std::uint32_t bits = simd::HWY_NAMESPACE::mask_bits(di, keep);
+      const auto places = hn::PromoteTo(di, hn::Load(du, places_of_bits[bits].data()));
+      hn::StoreU(hn::Add(places, base), di, out);
+      return static_cast<std::size_t>(std::popcount(bits));
+    }
   }
 
   HWY_INLINE hn::Vec<NarrowInts> of_faces(const std::uint32_t* values,

@@ -9,7 +9,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 
+#include "common/raster/places_of_bits.h"
 #include "common/simd/mask_bits-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,11 +20,13 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Tiles of a row: edge functions in double, headers in as many lanes of float.
+// Tiles of a row: headers, and in as many parts as it takes edge functions in double.
+using Headers = hn::CappedTag<float, 8>;
+using HeaderBits = hn::Rebind<std::uint32_t, Headers>;
+constexpr int row_lanes = HWY_MIN(HWY_LANES(float), 8);
 using Doubles = hn::CappedTag<double, 8>;
-using Headers = hn::Rebind<float, Doubles>;
-using HeaderBits = hn::Rebind<std::uint32_t, Doubles>;
-constexpr int row_lanes = HWY_MIN(HWY_LANES(double), 8);
+constexpr int part_lanes = HWY_MIN(HWY_LANES(double), 8);
+constexpr int parts = row_lanes / part_lanes;
 // Pixels of a tile.
 using Floats = hn::CappedTag<float, 16>;
 using Ints = hn::Rebind<std::int32_t, Floats>;
@@ -118,6 +122,8 @@ class TilePainter {
         value = hn::Add(hn::Add(value_0, hn::Mul(step_x, dx)), value_up);
       }
     }
+    if (open_.count != 0) paint_all(t);
+    open_.rows = 0;
   }
 
  private:
@@ -127,7 +133,8 @@ class TilePainter {
     double to_most[edges];    // from the least value in a tile to the greatest
     double to_corner[edges];  // and to that at its lower left pixel
     // From the lower left pixel of a tile to its others: edge functions and nearness.
-    hn::Vec<Ints> edge[edges][vectors];
+    hn::Vec<Ints> edge[edges][first_vectors];
+    hn::Vec<Ints> edge_step[edges];  // from vector to vector
     hn::Vec<Floats> nearness[vectors];
     float step_x, step_y;
     std::uint32_t id;
@@ -150,17 +157,13 @@ class TilePainter {
       t.to_corner[e] = -least;
       const auto edge_a = hn::Set(di, static_cast<std::int32_t>(a));
       const auto edge_b = hn::Set(di, static_cast<std::int32_t>(b));
-      // Vectors repeat their columns; from one row to the next is one step.
-      for (int i = 0; i < vectors; ++i) {
-        if (i < first_vectors) {
-          t.edge[e][i] = hn::Add(hn::Mul(hn::Load(di, pixel_columns.data() + i * lanes), edge_a),
-                                 hn::Mul(hn::Load(di, pixel_rows.data() + i * lanes), edge_b));
-        } else {
-          t.edge[e][i] =
-              hn::Add(t.edge[e][i - first_vectors],
-                      hn::Set(di, static_cast<std::int32_t>(b) * (first_vectors * lanes / 8)));
-        }
+      // Vectors repeat their columns.
+      for (int i = 0; i < first_vectors; ++i) {
+        t.edge[e][i] = hn::Add(hn::Mul(hn::Load(di, pixel_columns.data() + i * lanes), edge_a),
+                               hn::Mul(hn::Load(di, pixel_rows.data() + i * lanes), edge_b));
       }
+      t.edge_step[e] =
+          hn::Set(di, static_cast<std::int32_t>(b) * (first_vectors * lanes / tile_size));
     }
     for (int i = 0; i < vectors; ++i) {
       const auto dx = hn::Load(df, pixel_dx.data() + i * lanes);
@@ -178,20 +181,34 @@ class TilePainter {
     const Doubles d;
     const Headers df;
     const hn::Rebind<std::int32_t, Doubles> di;
-    hn::Vec<Doubles> edge[edges];
-    for (std::size_t e = 0; e < edges; ++e) {
-      // Whole numbers below 2^53: exact.
-      const double from_anchor =
-          (block.a[e][lane] * dx + block.b[e][lane] * dy) * static_cast<double>(tile_size);
-      edge[e] = hn::Add(t.along[e], hn::Set(d, from_anchor));
+    const hn::Rebind<std::int32_t, Headers> places_d;
+    const std::size_t from = 8 * open_.rows;
+    std::uint32_t touched = 0, whole = 0;
+    for (int part = 0; part < parts; ++part) {
+      const std::uint32_t of_part = ((1U << part_lanes) - 1) << (part * part_lanes);
+      if (parts > 1 && (open & of_part) == 0) continue;
+      hn::Vec<Doubles> edge[edges];
+      for (std::size_t e = 0; e < edges; ++e) {
+        // Whole numbers below 2^53: exact.
+        const double from_anchor =
+            (block.a[e][lane] * (dx + part * part_lanes) + block.b[e][lane] * dy) *
+            static_cast<double>(tile_size);
+        edge[e] = hn::Add(t.along[e], hn::Set(d, from_anchor));
+        const auto corner = hn::Add(edge[e], hn::Set(d, t.to_corner[e]));
+        const auto clamped =
+            hn::Min(hn::Max(corner, hn::Set(d, -greatest_edge)), hn::Set(d, greatest_edge));
+        hn::StoreU(hn::DemoteTo(di, clamped), di, open_.corner[e] + from + part * part_lanes);
+      }
+      const auto greatest = hn::Min(hn::Min(hn::Add(edge[0], hn::Set(d, t.to_most[0])),
+                                            hn::Add(edge[1], hn::Set(d, t.to_most[1]))),
+                                    hn::Min(hn::Add(edge[2], hn::Set(d, t.to_most[2])),
+                                            hn::Add(edge[3], hn::Set(d, t.to_most[3]))));
+      const auto smallest = hn::Min(hn::Min(edge[0], edge[1]), hn::Min(edge[2], edge[3]));
+      touched |= bits(d, hn::Ge(greatest, hn::Zero(d))) << (part * part_lanes);
+      whole |= bits(d, hn::Ge(smallest, hn::Zero(d))) << (part * part_lanes);
     }
-    const auto greatest = hn::Min(hn::Min(hn::Add(edge[0], hn::Set(d, t.to_most[0])),
-                                          hn::Add(edge[1], hn::Set(d, t.to_most[1]))),
-                                  hn::Min(hn::Add(edge[2], hn::Set(d, t.to_most[2])),
-                                          hn::Add(edge[3], hn::Set(d, t.to_most[3]))));
-    const auto smallest = hn::Min(hn::Min(edge[0], edge[1]), hn::Min(edge[2], edge[3]));
-    open &= bits(d, hn::Ge(greatest, hn::Zero(d)));
-    const std::uint32_t whole = bits(d, hn::Ge(smallest, hn::Zero(d))) & open;
+    open &= touched;
+    whole &= open;
     std::uint32_t partial = open & ~whole;
     if (whole != 0) {
       const auto least = hn::Add(value, hn::Set(df, low));
@@ -201,23 +218,34 @@ class TilePainter {
       if (replaced != 0) replace(at, replaced, least, most, value, t);
       partial |= whole & ~replaced;
     }
-    if (partial == 0) return;
-    alignas(64) std::int32_t corner[edges][8];
-    alignas(64) float values[8], mosts[8];
-    for (std::size_t e = 0; e < edges; ++e) {
-      const auto exact = hn::Add(edge[e], hn::Set(d, t.to_corner[e]));
-      const auto clamped =
-          hn::Min(hn::Max(exact, hn::Set(d, -greatest_edge)), hn::Set(d, greatest_edge));
-      hn::Store(hn::DemoteTo(di, clamped), di, corner[e]);
+    // To be painted together: a loop for each row would be of a length that nobody can foresee.
+    hn::StoreU(value, df, open_.value + from);
+    hn::StoreU(most, df, open_.most + from);
+    open_.first_tile[open_.rows] = at;
+    const hn::Rebind<std::uint8_t, Headers> du;
+    const auto places = hn::PromoteTo(places_d, hn::Load(du, places_of_bits[partial].data()));
+    hn::StoreU(hn::Add(places, hn::Set(places_d, static_cast<std::int32_t>(from))), places_d,
+               open_.place + open_.count);
+    open_.count += static_cast<std::size_t>(std::popcount(partial));
+    open_.rows += partial != 0 ? 1 : 0;
+    if (HWY_UNLIKELY(x + row_lanes > odd_x_ || y >= odd_y_)) {
+      for (; partial != 0; partial &= partial - 1) {
+        const int i = std::countr_zero(partial);
+        if (x + i >= odd_x_ || y >= odd_y_) tiles_.store(x + i, y);
+      }
     }
-    hn::Store(value, df, values);
-    hn::Store(most, df, mosts);
-    for (; partial != 0; partial &= partial - 1) {
-      const int i = std::countr_zero(partial);
-      if (HWY_UNLIKELY(x + i >= odd_x_ || y >= odd_y_)) tiles_.store(x + i, y);
-      paint(at + static_cast<std::size_t>(i), t,
-            {corner[0][i], corner[1][i], corner[2][i], corner[3][i]}, values[i], mosts[i]);
+    if (HWY_UNLIKELY(open_.rows == OpenTiles::most_rows)) paint_all(t);
+  }
+
+  HWY_INLINE void paint_all(const Triangle& t) {
+    for (std::size_t i = 0; i < open_.count; ++i) {
+      const auto place = static_cast<std::size_t>(open_.place[i]);
+      paint(open_.first_tile[place / 8] + place % 8, t,
+            {open_.corner[0][place], open_.corner[1][place], open_.corner[2][place],
+             open_.corner[3][place]},
+            open_.value[place], open_.most[place]);
     }
+    open_.count = open_.rows = 0;
   }
 
   template <class Lanes>
@@ -242,7 +270,8 @@ class TilePainter {
   }
 
   /// Compares the covered pixels of one tile; `corner` are the edge functions at its lower left
-  /// pixel, `value` is the nearness there, and none in the tile is above `most`.
+  /// pixel, `value` is the nearness there, and none in
+  /// the tile is above `most`.
   HWY_INLINE void paint(std::size_t tile, const Triangle& t,
                         const std::array<std::int32_t, edges>& corner, float value, float most) {
     const Floats df;
@@ -251,37 +280,44 @@ class TilePainter {
     float* const pixels = tiles_.pixels(tile);
     std::uint32_t* const ids = with_ids ? tiles_.ids(tile) : nullptr;
     const bool stored = stored_[tile] != 0;
-    hn::Vec<Floats> after[vectors];
+    const auto new_value = hn::Set(df, value);
+    hn::Vec<Ints> edge[edges][first_vectors];
+    for (std::size_t e = 0; e < edges; ++e) {
+      for (int i = 0; i < first_vectors; ++i) {
+        edge[e][i] = hn::Add(hn::Set(di, corner[e]), t.edge[e][i]);
+      }
+    }
+    auto any = hn::MaskFromVec(hn::Zero(df));
+    auto farthest = hn::Set(df, INFINITY);
+    hn::Mask<Floats> taken[vectors];
+    // Pixels may be written though nothing is taken: they then stay what they are, or mean nothing.
+    const auto compare = [&](int i, hn::Vec<Floats> before) HWY_ATTR {
+      const int repeated = i % first_vectors;
+      auto sign = edge[0][repeated];
+      for (std::size_t e = 1; e < edges; ++e) sign = hn::Or(sign, edge[e][repeated]);
+      for (std::size_t e = 0; e < edges; ++e) {
+        edge[e][repeated] = hn::Add(edge[e][repeated], t.edge_step[e]);
+      }
+      const auto covered = hn::RebindMask(df, hn::Gt(sign, hn::Set(di, -1)));
+      const auto fresh = hn::Add(new_value, t.nearness[i]);
+      taken[i] = hn::And(covered, hn::Gt(fresh, before));
+      any = hn::Or(any, taken[i]);
+      const auto after = hn::IfThenElse(taken[i], fresh, before);
+      farthest = hn::Min(farthest, after);
+      hn::Store(after, df, pixels + i * lanes);
+    };
     if (stored) {
-      for (int i = 0; i < vectors; ++i) after[i] = hn::Load(df, pixels + i * lanes);
+      for (int i = 0; i < vectors; ++i) compare(i, hn::Load(df, pixels + i * lanes));
     } else {
       const auto old_value = hn::Set(df, value_[tile]);
       const auto old_x = hn::Set(df, step_x_[tile]), old_y = hn::Set(df, step_y_[tile]);
       for (int i = 0; i < vectors; ++i) {
         const auto dx = hn::Load(df, pixel_dx.data() + i * lanes);
         const auto dy = hn::Load(df, pixel_dy.data() + i * lanes);
-        after[i] = hn::Add(old_value, hn::Add(hn::Mul(old_x, dx), hn::Mul(old_y, dy)));
+        compare(i, hn::Add(old_value, hn::Add(hn::Mul(old_x, dx), hn::Mul(old_y, dy))));
       }
     }
-    const auto new_value = hn::Set(df, value);
-    const auto edge_0 = hn::Set(di, corner[0]), edge_1 = hn::Set(di, corner[1]);
-    const auto edge_2 = hn::Set(di, corner[2]), edge_3 = hn::Set(di, corner[3]);
-    auto any = hn::MaskFromVec(hn::Zero(df));
-    auto farthest = hn::Set(df, INFINITY);
-    hn::Mask<Floats> taken[vectors];
-    for (int i = 0; i < vectors; ++i) {
-      const auto sign =
-          hn::Or(hn::Or(hn::Add(edge_0, t.edge[0][i]), hn::Add(edge_1, t.edge[1][i])),
-                 hn::Or(hn::Add(edge_2, t.edge[2][i]), hn::Add(edge_3, t.edge[3][i])));
-      const auto covered = hn::RebindMask(df, hn::Gt(sign, hn::Set(di, -1)));
-      const auto fresh = hn::Add(new_value, t.nearness[i]);
-      taken[i] = hn::And(covered, hn::Gt(fresh, after[i]));
-      any = hn::Or(any, taken[i]);
-      after[i] = hn::IfThenElse(taken[i], fresh, after[i]);
-      farthest = hn::Min(farthest, after[i]);
-    }
     if (hn::AllFalse(df, any)) return;
-    for (int i = 0; i < vectors; ++i) hn::Store(after[i], df, pixels + i * lanes);
     if (with_ids) {
       if (!stored) {
         const auto before = hn::Set(du, tiles_.plane_id()[tile]);
@@ -296,6 +332,18 @@ class TilePainter {
     nearest_[tile] = std::max(nearest_[tile], most);
   }
 
+  /// Tiles that a triangle covers in part, and what paint wants of them: eight of a row at a time.
+  struct OpenTiles {
+    static constexpr std::size_t most_rows = 16;
+
+    alignas(64) std::int32_t corner[edges][8 * most_rows];
+    alignas(64) float value[8 * most_rows], most[8 * most_rows];
+    std::size_t first_tile[most_rows];
+    std::int32_t place[8 * most_rows + 8];  // in these arrays, of those that are open
+    std::size_t rows = 0, count = 0;
+  };
+
+  OpenTiles open_;
   TileStore& tiles_;
   float* farthest_;
   float* nearest_;
