@@ -88,7 +88,7 @@ class TilePainter {
     const int x0 = block.x0[lane], x1 = block.x1[lane];
     const int y0 = block.y0[lane], y1 = block.y1[lane];
     if (y0 >= y1) return;
-    Triangle t;
+    Triangle& t = triangle_;
     t.step_x = block.step_x[lane];
     t.step_y = block.step_y[lane];
     t.id = block.id[lane];
@@ -343,6 +343,7 @@ class TilePainter {
     std::size_t rows = 0, count = 0;
   };
 
+  Triangle triangle_{};
   OpenTiles open_;
   TileStore& tiles_;
   float* farthest_;
