@@ -17,25 +17,39 @@ WindowTransform::WindowTransform(const Camera& camera, const Viewport& viewport)
 
 WindowRows WindowTransform::mesh(const glm::dmat4x3& transform) const {
   const Lens& lens = camera_.lens;
-  const bool has_eye = perspective();
-  WindowRows result;
-  for (int i = 0; i < 4; ++i) {
-    const glm::dvec3 column = i < 3 ? transform[i] : transform[3] - camera_.pose.eye;
-    const auto along = [&](const glm::dvec3& axis) {
-      return (axis.x * column.x + axis.y * column.y) + axis.z * column.z;
-    };
-    const double x = along(axes_[0]), y = along(axes_[1]), z = along(axes_[2]);
-    const auto at = static_cast<std::size_t>(i);
-    if (has_eye) {
-      result.x[at] = scale_x_ * (lens.near_m * x + lens.left * z);
-      result.y[at] = scale_y_ * (lens.near_m * y + lens.bottom * z);
-    } else {
-      const double constant = i < 3 ? 0.0 : 1.0;
-      result.x[at] = scale_x_ * (x - lens.left * constant);
-      result.y[at] = scale_y_ * (y - lens.bottom * constant);
-    }
-    result.depth[at] = -z;
+  // By coordinate, so that compilers make vectors of the columns.
+  std::array<double, 4> column_x, column_y, column_z, x, y, z;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto at = static_cast<int>(i);
+    column_x[i] = transform[at].x;
+    column_y[i] = transform[at].y;
+    column_z[i] = transform[at].z;
   }
+  column_x[3] -= camera_.pose.eye.x;
+  column_y[3] -= camera_.pose.eye.y;
+  column_z[3] -= camera_.pose.eye.z;
+  const auto along = [&](const glm::dvec3& axis, std::array<double, 4>& out) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      out[i] = (axis.x * column_x[i] + axis.y * column_y[i]) + axis.z * column_z[i];
+    }
+  };
+  along(axes_[0], x);
+  along(axes_[1], y);
+  along(axes_[2], z);
+  WindowRows result;
+  if (perspective()) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      result.x[i] = scale_x_ * (lens.near_m * x[i] + lens.left * z[i]);
+      result.y[i] = scale_y_ * (lens.near_m * y[i] + lens.bottom * z[i]);
+    }
+  } else {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double constant = i < 3 ? 0.0 : 1.0;
+      result.x[i] = scale_x_ * (x[i] - lens.left * constant);
+      result.y[i] = scale_y_ * (y[i] - lens.bottom * constant);
+    }
+  }
+  for (std::size_t i = 0; i < 4; ++i) result.depth[i] = -z[i];
   return result;
 }
 

@@ -34,13 +34,13 @@ bool same_pixels(const DepthRaster& a, const BruteForceRaster& b) {
 
 /// What peers are listed by: a view's time to draw, a box's time to be asked, and what is found.
 struct CityFigures {
-  double whole_ms = 0.0, test_then_draw_ms = 0.0;  // of a view
-  double query_ns = 0.0;                           // of a box: frustum, projection and test
-  double occluded = 0.0, ideal = 0.0;              // % of the boxes in the view
-  double found = 0.0;                              // % of those that are hidden in truth
-  double false_culls = 0.0;                        // % of those visible by 4 x 4 samples a pixel
-  double false_at_centres = 0.0;  // % of those visible at pixel centres: undisputed
-  bool same_buffers = true;       // as brute force draws them
+  double whole_ms = 0.0, whole_mesh_ms = 0.0, test_then_draw_ms = 0.0;  // of a view
+  double query_ns = 0.0;               // of a box: frustum, projection and test
+  double occluded = 0.0, ideal = 0.0;  // % of the boxes in the view
+  double found = 0.0;                  // % of those that are hidden in truth
+  double false_culls = 0.0;            // % of those visible by 4 x 4 samples a pixel
+  double false_at_centres = 0.0;       // % of those visible at pixel centres: undisputed
+  bool same_buffers = true;            // as brute force draws them
 };
 
 class CityRun {
@@ -57,12 +57,16 @@ class CityRun {
     raster_.begin(city_.camera(view));
     raster_.draw(city_.draws());
   }
+  void draw_whole_mesh(std::size_t view) {
+    raster_.begin(city_.camera(view));
+    raster_.draw({&city_.draw_of_all(), 1});
+  }
   void test_then_draw(std::size_t view) {
     raster_.begin(city_.camera(view));
-    raster_.draw_visible(city_.near_first(view), hidden_);
+    raster_.draw_visible(city_.draws(), city_.building_boxes(), city_.near_first(view), hidden_);
   }
 
-  /// Are all views, drawn both ways, what brute force draws?
+  /// Are all views, drawn in all ways, what brute force draws?
   bool same_as_brute_force() {
     BruteForceRaster brute(CityWorkload::size, {});
     bool same = true;
@@ -73,6 +77,10 @@ class CityRun {
       same = same && same_pixels(raster_, brute);
       test_then_draw(view);
       same = same && same_pixels(raster_, brute);
+      brute.begin(city_.camera(view));
+      brute.draw({&city_.draw_of_all(), 1});
+      draw_whole_mesh(view);
+      same = same && same_pixels(raster_, brute);
     }
     return same;
   }
@@ -82,21 +90,24 @@ class CityRun {
     result.same_buffers = same_as_brute_force();
     if (threads_ == 1) judge(result);
     // Interleaved, so that what else the machine does falls on all.
-    std::vector<double> whole, tested, asked;
+    std::vector<double> whole, whole_mesh, tested, asked;
     for (int round = 0; round <= rounds; ++round) {
-      double whole_s = 0.0, tested_s = 0.0, asked_s = 0.0;
+      double whole_s = 0.0, whole_mesh_s = 0.0, tested_s = 0.0, asked_s = 0.0;
       for (std::size_t view = 0; view < city_.view_count(); ++view) {
         if (threads_ == 1) tested_s += seconds([&] { test_then_draw(view); });
+        whole_mesh_s += seconds([&] { draw_whole_mesh(view); });
         whole_s += seconds([&] { draw_whole(view); });
         if (threads_ == 1) asked_s += seconds([&] { queries_.test(raster_, visible_); });
       }
       if (round == 0) continue;  // warms up
       whole.push_back(whole_s);
+      whole_mesh.push_back(whole_mesh_s);
       tested.push_back(tested_s);
       asked.push_back(asked_s);
     }
     const auto views = static_cast<double>(city_.view_count());
     result.whole_ms = 1e3 * median(whole) / views;
+    result.whole_mesh_ms = 1e3 * median(whole_mesh) / views;
     result.test_then_draw_ms = 1e3 * median(tested) / views;
     result.query_ns = 1e9 * median(asked) / (views * static_cast<double>(city_.boxes().size()));
     return result;
@@ -242,6 +253,8 @@ void add_city_cases(std::vector<BenchCase>& cases) {
   const auto any = [](const CityFigures&) { return true; };
   for (const std::string views : view_sets) {
     add(views, 1, "render whole, 1 thread", "ms", &CityFigures::whole_ms, same_buffers);
+    add(views, 1, "render whole, one mesh, 1 thread", "ms", &CityFigures::whole_mesh_ms,
+        same_buffers);
     add(views, 1, "render test-then-draw, 1 thread", "ms", &CityFigures::test_then_draw_ms,
         same_buffers);
     add(views, 1, "query, 1 thread", "ns", &CityFigures::query_ns, none_false);
@@ -251,6 +264,8 @@ void add_city_cases(std::vector<BenchCase>& cases) {
     add(views, 1, "false culls, 4x4 samples", "%", &CityFigures::false_culls, any);
     add(views, 1, "false culls, pixel centres", "%", &CityFigures::false_at_centres, none_false);
     add(views, 2, "render whole, 2 threads", "ms", &CityFigures::whole_ms, same_buffers);
+    add(views, 2, "render whole, one mesh, 2 threads", "ms", &CityFigures::whole_mesh_ms,
+        same_buffers);
     for (const int threads : {1, 2}) {
       cases.push_back({"depth",
                        "city, " + views + ", drawn, " + std::to_string(threads) + " threads",
@@ -280,12 +295,15 @@ void print_city_table() {
       "camera\n| | render ms | query ns | occluded %% | false culls, %% of visible |\n"
       "|---|---|---|---|---|\n");
   std::printf("| ideal | - | - | %s | 0 |\n", pair(1, &CityFigures::ideal, 1.0, 2).c_str());
-  std::printf("| one call, 1 thread | %s%s\n", pair(1, &CityFigures::whole_ms, 1.0, 3).c_str(),
-              same.c_str());
-  std::printf("| test-then-draw per building, 1 thread | %s%s\n",
-              pair(1, &CityFigures::test_then_draw_ms, 1.0, 3).c_str(), same.c_str());
-  std::printf("| one call, 2 threads | %s%s\n", pair(2, &CityFigures::whole_ms, 1.0, 3).c_str(),
-              same.c_str());
+  const auto row = [&](const char* name, int threads, double CityFigures::*value) {
+    std::printf("| %s, %d thread%s | %s%s\n", name, threads, threads == 1 ? "" : "s",
+                pair(threads, value, 1.0, 3).c_str(), same.c_str());
+  };
+  row("whole, one call of 2,000 draws", 1, &CityFigures::whole_ms);
+  row("whole, one mesh", 1, &CityFigures::whole_mesh_ms);
+  row("test-then-draw per building", 1, &CityFigures::test_then_draw_ms);
+  row("whole, one call of 2,000 draws", 2, &CityFigures::whole_ms);
+  row("whole, one mesh", 2, &CityFigures::whole_mesh_ms);
   const auto rate = [](const char* views) { return 1e3 / figures(views, 1).query_ns; };
   std::printf(
       "Whole pass of 100k queries (frustum + projection + test): %.0f / %.0f M/s, 1 thread.\n"

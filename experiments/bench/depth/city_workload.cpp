@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "common/geometry/rounding.h"
 #include "common/scene/library.h"
 
 namespace vislab {
@@ -62,17 +63,32 @@ CityWorkload::CityWorkload(const std::string& views) {
   for (std::uint32_t i = 0; i < buildings; ++i) {
     draws_.push_back({&mesh_, &scene_.objects[i].transform, 0, triangles, i * triangles, true});
   }
+  Mesh all;
+  building_boxes_.resize((buildings + BoxColumns::width - 1) / BoxColumns::width);
+  for (std::size_t i = 0; i < buildings; ++i) {
+    building_boxes_[i / BoxColumns::width].put(i % BoxColumns::width, bounds[i]);
+    const auto base = static_cast<std::uint32_t>(all.positions.size());
+    for (const glm::vec3& position : scene_.meshes[0].positions) {
+      const glm::dvec3 p = scene_.objects[i].transform * glm::dvec4(position, 1.0);
+      all.positions.emplace_back(rounded_to_float(p));
+    }
+    for (const glm::uvec3& corners : scene_.meshes[0].triangles) {
+      all.triangles.push_back(corners + base);
+    }
+  }
+  mesh_of_all_ = RasterMesh(all);
+  static const glm::dmat4x3 in_world(1.0);
+  draw_of_all_ = {&mesh_of_all_, &in_world, 0, static_cast<std::uint32_t>(all.triangles.size()), 0,
+                  true};
   for (const PathFrame& frame : path_.frames) {
     std::vector<double> distances;
     for (std::size_t i = 0; i < buildings; ++i) {
       distances.push_back(distance_squared(bounds[i], frame.camera.pose.eye));
     }
-    std::vector<std::size_t> order(buildings);
-    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::vector<std::uint32_t>& order = near_first_.emplace_back(buildings);
+    std::iota(order.begin(), order.end(), 0U);
     std::ranges::stable_sort(
-        order, [&](std::size_t a, std::size_t b) { return distances[a] < distances[b]; });
-    std::vector<RasterDraw>& sorted = near_first_.emplace_back();
-    for (const std::size_t i : order) sorted.push_back(draws_[i]);
+        order, [&](std::uint32_t a, std::uint32_t b) { return distances[a] < distances[b]; });
   }
 }
 

@@ -25,8 +25,13 @@ class CityWorkload {
   const Camera& camera(std::size_t view) const { return path_.frames[view].camera; }
   /// All buildings, in the order of ids.
   std::span<const RasterDraw> draws() const { return draws_; }
-  /// The same, by the distance of their boxes from the eye of a view, nearest first.
-  std::span<const RasterDraw> near_first(std::size_t view) const { return near_first_[view]; }
+  /// The same as one mesh in the world, whose vertices are rounded to float.
+  const RasterDraw& draw_of_all() const { return draw_of_all_; }
+  /// Their places in draws() by the distance of their boxes from the eye of a view, nearest first.
+  std::span<const std::uint32_t> near_first(std::size_t view) const { return near_first_[view]; }
+  /// The boxes of draws().
+  std::span<const BoxColumns> building_boxes() const { return building_boxes_; }
+  /// The boxes that are asked about.
   const std::vector<Aabb>& boxes() const { return boxes_; }
 
   /// What is true of each box in a view.
@@ -41,9 +46,11 @@ class CityWorkload {
  private:
   Scene scene_;
   Path path_;
-  RasterMesh mesh_;
+  RasterMesh mesh_, mesh_of_all_;
   std::vector<RasterDraw> draws_;
-  std::vector<std::vector<RasterDraw>> near_first_;
+  RasterDraw draw_of_all_;
+  std::vector<std::vector<std::uint32_t>> near_first_;
+  std::vector<BoxColumns> building_boxes_;
   std::vector<Aabb> boxes_;
   mutable std::vector<Truth> truth_;
 };
