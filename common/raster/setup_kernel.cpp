@@ -21,9 +21,10 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr std::size_t most_lanes = TriangleBlock::lanes;
-using Doubles = hn::CappedTag<double, most_lanes>;
+// A box has three faces that are seen: more lanes would often be empty.
+using Doubles = hn::CappedTag<double, 4>;
 using Vector = hn::Vec<Doubles>;
-constexpr std::size_t double_lanes = HWY_MIN(HWY_LANES(double), most_lanes);
+constexpr std::size_t double_lanes = HWY_MIN(HWY_LANES(double), 4);
 // As many lanes of other types as there are of Doubles.
 using NarrowInts = hn::Rebind<std::int32_t, Doubles>;
 using NarrowFloats = hn::Rebind<float, Doubles>;
@@ -317,13 +318,10 @@ class SetUp {
     const auto offset = static_cast<std::int32_t>(what_.draw->first_id - what_.draw->first);
     const auto ids = hn::Add(of_faces(mesh_.face_triangles(), which), hn::Set(di, offset));
     TriangleBlock fresh;
-    const bool whole =
-        kept == (1U << most_lanes) - 1 && scratch_.lane == 0 && !(apart_ && pairs != 0);
-    TriangleBlock& to = whole ? next_block() : fresh;
     for (std::size_t e = 0; e < SetupTriangle::edge_count; ++e) {
-      hn::Store(edge_a[e], d, to.a[e].data());
-      hn::Store(edge_b[e], d, to.b[e].data());
-      hn::Store(edge_c[e], d, to.c[e].data());
+      hn::Store(edge_a[e], d, fresh.a[e].data());
+      hn::Store(edge_b[e], d, fresh.b[e].data());
+      hn::Store(edge_c[e], d, fresh.c[e].data());
     }
     const auto store_int =
         [&](Vector value_of, std::array<std::int32_t, most_lanes>& array)
@@ -332,16 +330,15 @@ class SetUp {
       const NarrowFloats df;
       hn::Store(hn::DemoteTo(df, value_of), df, array.data());
     };
-    store_int(tile_x0, to.x0);
-    store_int(tile_y0, to.y0);
-    store_int(tile_x1, to.x1);
-    store_int(tile_y1, to.y1);
-    store_float(value, to.nearness);
-    store_float(a, to.step_x);
-    store_float(b, to.step_y);
-    hn::Store(ids, di, reinterpret_cast<std::int32_t*>(to.id.data()));
+    store_int(tile_x0, fresh.x0);
+    store_int(tile_y0, fresh.y0);
+    store_int(tile_x1, fresh.x1);
+    store_int(tile_y1, fresh.y1);
+    store_float(value, fresh.nearness);
+    store_float(a, fresh.step_x);
+    store_float(b, fresh.step_y);
+    hn::Store(ids, di, reinterpret_cast<std::int32_t*>(fresh.id.data()));
     scratch_.drawn += static_cast<std::size_t>(std::popcount(kept) + std::popcount(kept & pairs));
-    if (whole) return;
     Diagonal diagonal;
     if (apart_) {
       edge(4, v[0], v[2]);
