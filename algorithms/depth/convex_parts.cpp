@@ -7,6 +7,7 @@
 
 #include "algorithms/depth/covered_hull.h"
 #include "common/geometry/rounding.h"
+#include "common/raster/margins.h"
 
 namespace vislab::depth_culling {
 namespace {
@@ -16,8 +17,6 @@ constexpr std::size_t max_points = 26;  // as many as there are directions
 constexpr std::size_t max_planes = 128;
 // Two faces of one plane, up to the rounding of doubles.
 constexpr double same_plane = 1e-13;
-// Of nearness: far above the rounding of doubles here, far below what can be seen.
-constexpr double relative_margin = 1.0 / 1'048'576.0;
 
 /// Connected parts of a mesh: by triangle the number of its part; vertices at equal positions count
 /// as one.
@@ -181,7 +180,7 @@ struct WindowPoints {
 bool project(const WindowTransform& window, const WindowRows& rows, const ConvexPart& part,
              WindowPoints& out) {
   const double nearest = window.camera().lens.near_m;
-  const double beyond = nearest + relative_margin * std::abs(nearest);
+  const double beyond = nearest + rounding_margin * std::abs(nearest);
   std::array<WindowPoint, max_points> points;
   const std::size_t count = part.points.size();
   std::size_t before = 0;
@@ -259,7 +258,7 @@ bool covered_rectangle(const WindowTransform& window, const glm::dmat4x3& transf
   if (!part.planes.empty()) {
     nearness = std::max(nearness, least_nearness(window, transform, part, out));
   }
-  const double lowered = nearness - window.device_margin() - relative_margin * std::abs(nearness);
+  const double lowered = nearness - window.device_margin() - rounding_margin * std::abs(nearness);
   if (!std::isfinite(lowered)) return false;
   out.nearness = round_down(lowered);
   return true;

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "common/raster/margins.h"
+
 namespace vislab::depth_culling {
 namespace {
 
@@ -59,7 +61,7 @@ bool largest_covered(std::span<glm::dvec2> points, const Viewport& viewport, Box
   std::ranges::sort(points, [](const glm::dvec2& a, const glm::dvec2& b) {
     return a.x != b.x ? a.x < b.x : a.y < b.y;
   });
-  constexpr double reach = covered_margin_px;
+  constexpr double reach = snapping_margin_px;
   const auto column = [&](double x) { return std::clamp(x, -1.0, viewport.width + 1.0); };
   const int first =
       std::max(0, static_cast<int>(std::ceil(column(points.front().x + reach - 0.5))));

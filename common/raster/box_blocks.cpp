@@ -4,12 +4,11 @@
 #include <cmath>
 
 #include "common/geometry/rounding.h"
+#include "common/raster/margins.h"
 #include "common/raster/tile_queries.h"
 
 namespace vislab {
 namespace {
-
-constexpr double margin_px = 1.0 / 32.0;
 
 /// Of a function of points relative to the eye, whose value at the eye is `constant`.
 ColumnView::Row row_of(const glm::dvec3& normal, double constant, const glm::dvec3& eye) {
@@ -89,7 +88,7 @@ ColumnView::ColumnView(const WindowTransform& window, Coverage coverage)
     sides[2] = row_of(-normal_x, size_x - at_eye_x, eye);
     sides[3] = row_of(-normal_y, size_y - at_eye_y, eye);
   }
-  reach = round_up(margin_px + (coverage == Coverage::centres ? 0.5 : 1.0));
+  reach = round_up(snapping_margin_px + (coverage == Coverage::centres ? 0.5 : 1.0));
 }
 
 void place_columns_scalar(const ColumnView& view, const BoxColumns& boxes, ColumnPlaces& out) {

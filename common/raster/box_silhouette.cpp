@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "common/geometry/rounding.h"
+#include "common/raster/margins.h"
 #include "common/raster/tile_queries.h"
 
 namespace vislab {
 namespace {
 
-constexpr double margin_px = 1.0 / 32.0;
 // Of a box's distance along an axis: what is nearer to the eye's plane is not divided by.
 constexpr double least_distance = 1e-12;
 constexpr double least_slope = 1e-6;  // of orthographic rays against a slab
@@ -39,7 +39,7 @@ PixelRays::PixelRays(const WindowTransform& window, Coverage coverage)
 BoxPlanes PixelRays::planes_of(const Aabb& box) const {
   glm::dvec3 low = glm::dvec3(box.min) - eye_;
   glm::dvec3 high = glm::dvec3(box.max) - eye_;
-  double grown = margin_px * pixel_m_;
+  double grown = snapping_margin_px * pixel_m_;
   if (perspective_) {
     double farthest = 0.0;
     for (int axis = 0; axis < 3; ++axis) {

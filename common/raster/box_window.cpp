@@ -4,13 +4,10 @@
 #include <cmath>
 
 #include "common/geometry/rounding.h"
+#include "common/raster/margins.h"
 
 namespace vislab {
 namespace {
-
-// Snapping moves a vertex by up to 1/512 pixel; window positions of corners are rounded, too.
-constexpr double margin_px = 1.0 / 32.0;
-constexpr double relative_margin = 1.0 / 1'048'576.0;
 
 /// Do all corners surely lie beyond one and the same side of the image? Also for corners behind the
 /// eye.
@@ -19,8 +16,8 @@ bool beyond_a_side(const WindowTransform& window, const std::array<WindowPoint, 
   int left = 0, right = 0, below = 0, above = 0;
   for (const WindowPoint& corner : corners) {
     const double w = window.perspective() ? corner.depth : 1.0;
-    const double error_x = relative_margin * (std::abs(corner.x) + std::abs(width * w));
-    const double error_y = relative_margin * (std::abs(corner.y) + std::abs(height * w));
+    const double error_x = rounding_margin * (std::abs(corner.x) + std::abs(width * w));
+    const double error_y = rounding_margin * (std::abs(corner.y) + std::abs(height * w));
     left += corner.x < -error_x ? 1 : 0;
     right += corner.x - width * w > error_x ? 1 : 0;
     below += corner.y < -error_y ? 1 : 0;
@@ -45,7 +42,7 @@ BoxPlace project_box(const WindowTransform& window, const Aabb& box, Coverage co
     least_depth = std::min(least_depth, corners[i].depth);
     greatest_depth = std::max(greatest_depth, corners[i].depth);
   }
-  const double depth_error = relative_margin * (std::abs(least_depth) + std::abs(greatest_depth));
+  const double depth_error = rounding_margin * (std::abs(least_depth) + std::abs(greatest_depth));
   if (greatest_depth + depth_error < lens.near_m) return BoxPlace::outside;
   const double least_seen = least_depth - depth_error;
   if (least_seen > lens.far_m) return BoxPlace::outside;
@@ -64,10 +61,10 @@ BoxPlace project_box(const WindowTransform& window, const Aabb& box, Coverage co
   // A pixel's centre, or its far border if all of it counts.
   const double reach = coverage == Coverage::centres ? 0.5 : 1.0;
   const auto from = [&](double least) {
-    return static_cast<int>(std::clamp(std::ceil(least - margin_px - reach), 0.0, 1e6));
+    return static_cast<int>(std::clamp(std::ceil(least - snapping_margin_px - reach), 0.0, 1e6));
   };
   const auto to = [&](double greatest, int size) {
-    const double after = std::floor(greatest + margin_px + reach);
+    const double after = std::floor(greatest + snapping_margin_px + reach);
     return static_cast<int>(std::clamp(after, 0.0, static_cast<double>(size)));
   };
   out.x0 = from(least_x);
@@ -76,7 +73,7 @@ BoxPlace project_box(const WindowTransform& window, const Aabb& box, Coverage co
   out.y1 = to(greatest_y, window.viewport().height);
   if (out.x0 >= out.x1 || out.y0 >= out.y1) return BoxPlace::outside;
   const double nearest = window.nearness(least_seen);
-  out.nearness = round_up(nearest + window.device_margin() + relative_margin * std::abs(nearest));
+  out.nearness = round_up(nearest + window.device_margin() + rounding_margin * std::abs(nearest));
   return BoxPlace::inside;
 }
 

@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <bit>
-#include <string>
 
 #include "common/raster/setup_kernel.h"
-#include "common/scene/error.h"
+#include "common/raster/tile_store.h"
 
 namespace vislab {
 namespace {
 
 constexpr std::uint64_t all_pixels = ~std::uint64_t{0};
-constexpr int greatest_size = 16'384;
 
 /// Pixels [x0, x1) x [y0, y1) of a tile, within 0 … tile_size.
 std::uint64_t rectangle_mask(int x0, int y0, int x1, int y1) {
@@ -39,11 +37,7 @@ MaskedDepth::MaskedDepth(const Viewport& size, const RasterOptions& options, Lay
       tiles_x_((size.width + tile_size - 1) / tile_size),
       tiles_y_((size.height + tile_size - 1) / tile_size),
       work_(std::make_unique<Work>()) {
-  if (size.width < 1 || size.height < 1 || size.width > greatest_size ||
-      size.height > greatest_size) {
-    throw InputError("a depth buffer of " + std::to_string(size.width) + " x " +
-                     std::to_string(size.height) + " pixels; allowed are 1 x 1 to 16384 x 16384");
-  }
+  check_buffer_size(size);
   const auto tiles = static_cast<std::size_t>(tiles_x_) * static_cast<std::size_t>(tiles_y_);
   reference_.resize(tiles);
   working_.resize(tiles);
@@ -226,7 +220,11 @@ float MaskedDepth::nearness(int x, int y) const {
 
 std::size_t MaskedDepth::bytes() const {
   return (reference_.capacity() + working_.capacity()) * sizeof(float) +
-         (mask_.capacity() + outside_.capacity()) * sizeof(std::uint64_t);
+         (mask_.capacity() + outside_.capacity()) * sizeof(std::uint64_t) + sizeof(Work) +
+         work_->clusters.capacity() * sizeof(ClusterDraw) +
+         work_->scratch.blocks.capacity() * sizeof(TriangleBlock) +
+         work_->partial.capacity() * sizeof(PartialTile) +
+         work_->coverage.capacity() * sizeof(TileCoverage);
 }
 
 }  // namespace vislab

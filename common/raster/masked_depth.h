@@ -34,7 +34,7 @@ enum class LayerMerge {
 
 class MaskedDepth {
  public:
-  /// Throws InputError for sizes below 1 x 1 and beyond 16,384 x 16,384. Of the options ids and
+  /// Throws InputError as check_buffer_size() (tile_store.h). Of the options ids and
   /// threads do not count.
   MaskedDepth(const Viewport& size, const RasterOptions& options,
               LayerMerge merge = LayerMerge::distance);

@@ -2,11 +2,12 @@
 #pragma once
 
 #include "common/raster/box_silhouette.h"
+#include "common/raster/margins.h"
 
 namespace vislab {
 
 /// Of a nearness: more than what float operations on it can be off by.
-inline constexpr float nearness_rounding = 1.0F / 1'048'576.0F;
+inline constexpr auto nearness_rounding = static_cast<float>(rounding_margin);
 
 /// The planes of a box about a tile's lower left pixel.
 struct TilePlanes {

@@ -10,10 +10,19 @@
 namespace vislab {
 namespace {
 
-constexpr int greatest_size = 16'384;
 constexpr std::align_val_t alignment{64};
 
 }  // namespace
+
+void check_buffer_size(const Viewport& size) {
+  if (size.width < 1 || size.height < 1 || size.width > greatest_buffer_px ||
+      size.height > greatest_buffer_px) {
+    throw InputError("a depth buffer of " + std::to_string(size.width) + " x " +
+                     std::to_string(size.height) +
+                     " pixels cannot be made: both sizes must lie in 1 .. " +
+                     std::to_string(greatest_buffer_px));
+  }
+}
 
 void TileStore::Free::operator()(void* memory) const { ::operator delete(memory, alignment); }
 
@@ -24,11 +33,7 @@ TileStore::Memory<T> TileStore::allocate(std::size_t count) {
 
 TileStore::TileStore(const Viewport& size, bool ids)
     : width_(size.width), height_(size.height), has_ids_(ids) {
-  if (width_ < 1 || height_ < 1 || width_ > greatest_size || height_ > greatest_size) {
-    throw InputError(
-        "a depth buffer of " + std::to_string(width_) + " x " + std::to_string(height_) +
-        " pixels cannot be made: both sizes must lie in 1 .. " + std::to_string(greatest_size));
-  }
+  check_buffer_size(size);
   tiles_x_ = (width_ + tile_size - 1) / tile_size;
   tiles_y_ = (height_ + tile_size - 1) / tile_size;
   stride_ = tiles_x_ + padding;

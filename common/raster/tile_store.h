@@ -21,11 +21,15 @@
 
 namespace vislab {
 
+/// Throws InputError for sizes below 1 x 1 and beyond greatest_buffer_px x greatest_buffer_px.
+void check_buffer_size(const Viewport& size);
+inline constexpr int greatest_buffer_px = 16'384;
+
 class TileStore {
  public:
   static constexpr int padding = 16;
 
-  /// Throws InputError for sizes below 1 x 1 and beyond 16,384 x 16,384.
+  /// Throws InputError as check_buffer_size().
   TileStore(const Viewport& size, bool ids);
 
   /// Makes every tile a plane tile of this nearness. O(tiles).
