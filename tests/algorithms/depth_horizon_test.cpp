@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "algorithms/depth/convex_parts.h"
 #include "algorithms/depth/covered_hull.h"
@@ -104,6 +106,51 @@ TEST(CoveredHull, FindsNothingInWhatHasNoArea) {
   EXPECT_FALSE(largest_covered({}, {64, 64}, found));
 }
 
+/// How far the point lies inside of the points' convex hull, by the half-planes of all pairs that
+/// have every point on one side.
+double depth_in_hull(std::span<const glm::dvec2> points, const glm::dvec2& at) {
+  double least = INFINITY;
+  for (const glm::dvec2& a : points) {
+    for (const glm::dvec2& b : points) {
+      if (a == b) continue;
+      const glm::dvec2 inward = glm::normalize(glm::dvec2(a.y - b.y, b.x - a.x));
+      const bool is_side = std::ranges::all_of(
+          points, [&](const glm::dvec2& p) { return glm::dot(inward, p - a) >= -1e-9; });
+      if (is_side) least = std::min(least, glm::dot(inward, at - a));
+    }
+  }
+  return least;
+}
+
+TEST(CoveredHull, KeepsPixelCentresADeviceMarginInside) {
+  Random random(7);
+  constexpr Viewport size{40, 30};
+  int found = 0, close = 0;
+  for (int trial = 0; trial < trials; ++trial) {
+    std::vector<glm::dvec2> points(3 + random.below(8));
+    for (glm::dvec2& p : points) {
+      p = {random.uniform(-5.0, 45.0), random.uniform(-5.0, 35.0)};
+      // Edges along rows and columns, about as far from their centres as the margin is wide.
+      if (trial % 3 == 0) p = glm::floor(p) + random.uniform(0.45, 0.55);
+    }
+    const std::vector<glm::dvec2> all = points;
+    BoxWindow r;
+    if (!largest_covered(points, size, r)) continue;
+    ++found;
+    ASSERT_TRUE(r.x0 >= 0 && r.y0 >= 0 && r.x1 <= size.width && r.y1 <= size.height);
+    double least = INFINITY;  // the corners' are the least of all centres'
+    for (const int x : {r.x0, r.x1 - 1}) {
+      for (const int y : {r.y0, r.y1 - 1}) {
+        least = std::min(least, depth_in_hull(all, {x + 0.5, y + 0.5}));
+      }
+    }
+    ASSERT_GE(least, 1.0 / 32.0 - 1e-9) << "trial " << trial;
+    close += least < 2.0 / 32.0 ? 1 : 0;
+  }
+  EXPECT_GT(found, trials / 4);
+  EXPECT_GT(close, trials / 40);
+}
+
 /// Two cubes and a third one without its first face.
 Mesh three_cubes() {
   Mesh mesh;
@@ -180,6 +227,74 @@ TEST(ConvexParts, CoverTheirRectanglesAtLeastAsNearAsTheySay) {
   }
   EXPECT_GT(found, trials / 4);
   EXPECT_GT(cut, trials / 100);
+}
+
+/// The nearness of the mesh's first surface at a window position, by all of its triangles' planes
+/// and edges in double; -infinity if there is none.
+double exact_nearness(const WindowTransform& window, const glm::dmat4x3& transform,
+                      const Mesh& mesh, const glm::dvec2& px) {
+  const Viewport& size = window.viewport();
+  const Ray ray = window.camera().ray({px.x / size.width, px.y / size.height});
+  double nearest = -INFINITY;
+  for (const glm::uvec3& t : mesh.triangles) {
+    std::array<glm::dvec3, 3> corners;
+    for (int i = 0; i < 3; ++i) {
+      corners[static_cast<std::size_t>(i)] =
+          transform * glm::dvec4(glm::dvec3(mesh.positions[t[i]]), 1.0) - ray.origin;
+    }
+    const auto& [a, b, c] = corners;
+    const glm::dvec3 normal = glm::cross(b - a, c - a);
+    const double approach = glm::dot(normal, ray.direction);
+    const glm::dvec3 at = ray.direction * (glm::dot(normal, a) / approach);
+    const double slack = -1e-9 * glm::dot(normal, normal);
+    if (glm::dot(glm::cross(b - a, at - a), normal) < slack ||
+        glm::dot(glm::cross(c - b, at - b), normal) < slack ||
+        glm::dot(glm::cross(a - c, at - c), normal) < slack) {
+      continue;
+    }
+    const double depth = window.world()(ray.origin + at).depth;
+    if (depth > window.camera().lens.near_m) nearest = std::max(nearest, window.nearness(depth));
+  }
+  return nearest;
+}
+
+TEST(ConvexParts, StayBelowTheExactNearnessByADevicesMargin) {
+  const std::array meshes{cube_mesh(), sphere_mesh(4)};
+  Random random(11);
+  constexpr Viewport size{61, 47};
+  int found = 0, close = 0;
+  for (int trial = 0; trial < trials / 4; ++trial) {
+    const Mesh& mesh = meshes[static_cast<std::size_t>(trial) % meshes.size()];
+    const auto vector = [&](double r) {
+      return glm::dvec3(random.uniform(-r, r), random.uniform(-r, r), random.uniform(-r, r));
+    };
+    // Faces towards the eye, along which the nearness is the same, and walls that run away from it.
+    const bool upright = trial % 4 < 2;
+    const glm::dmat4x3 transform = placed({0.0, 0.0, 0.0}, glm::abs(vector(3.0)) + 0.2);
+    const glm::dvec3 eye = upright ? glm::dvec3(0.0, 0.0, 9.0) : vector(4.0) + glm::dvec3(6.0);
+    Camera camera{look_at(eye, {0.0, 0.0, 0.0}),
+                  perspective_lens(degrees(70.0), size.aspect(), 0.1, 50.0)};
+    if (trial % 5 == 0) camera.lens = orthographic_lens(8.0, size.aspect(), 0.1, 50.0);
+    const WindowTransform window(camera, size);
+    BoxWindow r;
+    if (!covered_rectangle(window, transform, convex_parts(mesh).front(), r)) continue;
+    ++found;
+    double least = INFINITY;
+    // A device's snapping moves surfaces by less than 1/64 pixel.
+    for (const int x : {r.x0, r.x1 - 1}) {
+      for (const int y : {r.y0, r.y1 - 1}) {
+        for (int corner = 0; corner < 4; ++corner) {
+          const double across = (corner & 1) != 0 ? 0.5 + 1.0 / 64.0 : 0.5 - 1.0 / 64.0;
+          const double up = (corner & 2) != 0 ? 0.5 + 1.0 / 64.0 : 0.5 - 1.0 / 64.0;
+          least = std::min(least, exact_nearness(window, transform, mesh, {x + across, y + up}));
+        }
+      }
+    }
+    ASSERT_LE(r.nearness, least - window.device_margin()) << "trial " << trial;
+    close += r.nearness > least - 1.1 * window.device_margin() - 1e-5 * std::abs(least) ? 1 : 0;
+  }
+  EXPECT_GT(found, trials / 16);
+  EXPECT_GT(close, trials / 32);
 }
 
 Play city(std::uint32_t bridges = 0) {

@@ -140,6 +140,27 @@ TEST(DepthMasked, EmitsNearFirstAndFollowsWhatMovesAndVanishes) {
   EXPECT_EQ(run.objects(camera), (std::vector<ObjectId>{1, 2}));
 }
 
+TEST(DepthMasked, ForgetsTheBufferOnResetAlsoIfThePathHasOneFrame) {
+  Scene scene;
+  scene.meshes = {cube_mesh()};
+  scene.objects = {{0, placed({0.0, 0.0, -6.0}), none_id}, {0, placed({0.0, 0.0, 0.0}), none_id}};
+  scene.finish();
+  const SceneState state(scene);
+  const Frame only{0, camera_at({0.0, 0.0, 8.0}, {0.0, 0.0, 0.0}), {64, 64}, state.view(), 0.0};
+  for (const std::string buffer : {"exact", "masked", "masked_volume"}) {
+    // The far cube is asked about first, while nothing is drawn that hides it.
+    CullerRun run("depth.masked[order=far_first,sleep=false,buffer=" + buffer + "]", scene);
+    RecordingSink sink;
+    for (int round = 0; round < 3; ++round) {
+      run.reset();
+      sink.start(scene, only);
+      run.culler().update(only, {});
+      run.culler().cull(only, Candidates::everything(), sink);
+      EXPECT_EQ(sink.emitted().size(), 2U) << buffer << ", round " << round;
+    }
+  }
+}
+
 TEST(DepthMasked, LetsLaterBatchesOfAFrameBeHiddenByEarlierOnes) {
   const Scene scene = wall();
   CullerRun run("depth.masked", scene);
