@@ -2,19 +2,14 @@
 
 #include <algorithm>
 
+#include "common/geometry/random.h"
 #include "common/geometry/rounding.h"
 
 namespace vislab::depth_culling {
 namespace {
 
-/// In [-1, 1], by splitmix64.
-double noise(ObjectId object) {
-  std::uint64_t z = (std::uint64_t{object} + 1) * 0x9E3779B97F4A7C15ULL;
-  z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-  z = (z ^ (z >> 27U)) * 0x94D049BB133111EBULL;
-  z ^= z >> 31U;
-  return static_cast<double>(z >> 11U) / static_cast<double>(std::uint64_t{1} << 52U) - 1.0;
-}
+/// In [-1, 1), by the object's id alone.
+double noise(ObjectId object) { return Random(object * Random::increment).uniform(-1.0, 1.0); }
 
 /// The nearness of the box's farthest corner.
 float farthest_nearness(const WindowTransform& window, const Aabb& box) {
