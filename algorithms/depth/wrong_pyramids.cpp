@@ -33,6 +33,10 @@ class WithPyramid : public TestThenDraw {
   WithPyramid(CullerInfo info, const WrongSettings&)
       : TestThenDraw(std::move(info), 1, {Coverage::centres, DepthRounding::lowered}) {}
 
+  std::size_t bytes() const override {
+    return TestThenDraw::bytes() + (pyramid_ ? pyramid_->bytes() : 0);
+  }
+
  protected:
   void begin(const Frame& frame) override {
     const Viewport& size = frame.viewport;

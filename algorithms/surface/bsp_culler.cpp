@@ -58,10 +58,12 @@ void BspPainter::prepare() {
   ranks_.assign(corners_.size(), no_rank);
 }
 
-std::size_t BspPainter::prepared_bytes() const {
+std::size_t BspPainter::own_bytes() const {
   return tree_.bytes() + corners_.capacity() * sizeof(corners_[0]) +
          object_of_.capacity() * sizeof(ObjectId) + offered_.capacity() +
-         ranks_.capacity() * sizeof(std::uint32_t) + rows_.capacity() * sizeof(WindowRows);
+         ranks_.capacity() * sizeof(std::uint32_t) + rows_.capacity() * sizeof(WindowRows) +
+         nearness_.capacity() * sizeof(double) + free_.capacity() * sizeof(int) +
+         sides_.capacity() * sizeof(Side) + stack_.capacity() * sizeof(stack_[0]);
 }
 
 bool BspPainter::has_moved(const Frame& frame, ObjectId object) const {

@@ -27,7 +27,7 @@ class BspPainter final : public SurfaceCuller {
  protected:
   void prepare() override;
   void paint(const Frame& frame, const Candidates& candidates) override;
-  std::size_t prepared_bytes() const override;
+  std::size_t own_bytes() const override;
   void order(std::vector<TriangleRange>& kept) override;
 
  private:

@@ -65,6 +65,12 @@ class SpanBuffer final : public SurfaceCuller {
   }
 
  protected:
+  std::size_t own_bytes() const override {
+    return (spans_.capacity() + sorted_.capacity()) * sizeof(Span) +
+           row_begins_.capacity() * sizeof(std::size_t) +
+           end_points_.capacity() * sizeof(EndPoint) +
+           (by_left_end_.capacity() + active_.capacity()) * sizeof(const Span*);
+  }
   void paint(const Frame& frame, const Candidates& candidates) override {
     collect(frame, candidates);
     for (int y = 0; y < frame.viewport.height; ++y) {

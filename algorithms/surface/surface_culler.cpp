@@ -34,6 +34,8 @@ void SurfaceCuller::cull(const Frame& frame, const Candidates& candidates, DrawS
   out.ranges(kept_);
 }
 
-std::size_t SurfaceCuller::bytes() const { return owns_.capacity() + prepared_bytes(); }
+std::size_t SurfaceCuller::bytes() const {
+  return image_.bytes() + owns_.capacity() + kept_.capacity() * sizeof(TriangleRange) + own_bytes();
+}
 
 }  // namespace vislab::surface

@@ -27,6 +27,7 @@ class OwnerImage {
   TriangleId& at(int x, int y) { return owners_[index(x, y)]; }
   std::span<const TriangleId> owners() const { return owners_; }
   const Viewport& viewport() const { return viewport_; }
+  std::size_t bytes() const { return owners_.capacity() * sizeof(TriangleId); }
 
  private:
   Viewport viewport_;
@@ -49,8 +50,8 @@ class SurfaceCuller : public ICuller {
   virtual void prepare() {}
   /// Paints the candidates into image(), which is clear and has the frame's size.
   virtual void paint(const Frame& frame, const Candidates& candidates) = 0;
-  /// Memory of what prepare() made.
-  virtual std::size_t prepared_bytes() const { return 0; }
+  /// Memory of what the method itself holds.
+  virtual std::size_t own_bytes() const { return 0; }
   /// Puts the triangles that are kept into the order of drawing; they come in the candidates'.
   virtual void order(std::vector<TriangleRange>& /*kept*/) {}
 

@@ -37,6 +37,7 @@ class ZBuffer final : public SurfaceCuller {
 
  protected:
   void paint(const Frame& frame, const Candidates& candidates) override;
+  std::size_t own_bytes() const override { return depths_.capacity() * sizeof(double); }
 
  private:
   Rules rules_;
