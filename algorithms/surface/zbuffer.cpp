@@ -5,11 +5,11 @@
 //   computed in double and kept as bits says: as an integer of 16, 24 or 32 bits, or as a float.
 //   Textbook and thesis have opposite conventions: in the textbook greater is nearer and the buffer
 //   starts at 0 (reversed), in the thesis smaller is nearer and it starts at 1 (standard).
-// Guarantee: by what is kept. image_exact for 32 bits, in both conventions, and for float reversed:
-//   their steps stay below the relative depth difference that the judge excuses, 1e-4, up to depths
-//   of 400,000 times the near distance. approximate for the others: with 24 bits, and with float
-//   standard, whose steps are 2^-24 near 1, surfaces that differ by more change places beyond 1,600
-//   times the near distance; with 16 bits beyond 6 times.
+// Guarantee: by what is kept. image_exact for float reversed: its steps are 2^-24 of the depth or
+//   less, far below the relative difference that the judge excuses, 1e-4. approximate for the
+//   others, whose steps do not shrink with the depth: surfaces that differ by more change places
+//   beyond 400,000 times the near distance with 32 bits; beyond 1,600 times with 24 bits, and with
+//   float standard, whose steps are 2^-24 near 1; beyond 6 times with 16 bits.
 // Cost: O(pixels of all candidates); 16 bytes a pixel here, for depths are held as double.
 // Limits: every surface that covers a pixel costs a test there, seen or not. Needs no order, and
 //   takes interpenetration and cycles as they come.
@@ -30,7 +30,7 @@ CullerInfo describe() {
   info.summary =
       "Every pixel keeps the nearest depth so far and the triangle that it belongs to; triangles "
       "that own a pixel in the end are kept.";
-  info.guarantee = Guarantee::image_exact;
+  info.guarantee = Guarantee::approximate;
   info.repeatability = Repeatability::stateless;
   info.granularity = Granularity::triangle;
   info.culls = Culls::hidden;
@@ -47,8 +47,9 @@ CullerInfo describe() {
           "which matters for floats, as they are finest around 0")};
   info.cost = "O(pixels that candidates cover): a test each";
   info.limits =
-      "Every surface in a pixel costs a test, seen or not. 24 bits and float standard confuse "
-      "depths beyond about 1,600 times the near distance, 16 bits beyond 6 times.";
+      "Every surface in a pixel costs a test, seen or not. 32 bits confuse depths beyond about "
+      "400,000 times the near distance, 24 bits and float standard beyond 1,600 times, 16 bits "
+      "beyond 6 times.";
   info.sources = {"Textbook chapter 17, Culling (in German), 17.2.1",
                   "Kowalka 2016 (thesis, HAW Hamburg), 2.4.1"};
   return info;
@@ -68,7 +69,7 @@ CullerEntry surface_zbuffer() {
                                     : DepthConvention::standard;
             CullerInfo info = describe();
             const bool fine_float = bits == "float" && values.choice("convention") == "reversed";
-            if (bits != "32" && !fine_float) info.guarantee = Guarantee::approximate;
+            if (fine_float) info.guarantee = Guarantee::image_exact;
             return std::make_unique<ZBuffer>(
                 std::move(info), ZBuffer::Rules{format, format.convention, format.convention});
           }};
