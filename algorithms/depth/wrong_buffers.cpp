@@ -7,6 +7,7 @@
 
 #include "algorithms/depth/test_then_draw.h"
 #include "common/geometry/rounding.h"
+#include "common/raster/tile_store.h"
 
 namespace vislab::depth_culling {
 namespace {
@@ -132,14 +133,18 @@ class CentresAtReducedSize : public TestThenDraw {
 };
 
 /// Pixels count as covered where anything touches them: four by four samples a pixel, of which one
-/// is enough.
+/// is enough; fewer where so fine a buffer would be larger than buffers may be.
 class RoundedOutward : public FullSize {
  public:
   using FullSize::FullSize;
 
+  std::size_t bytes() const override { return FullSize::bytes() + (fine_ ? fine_->bytes() : 0); }
+
  protected:
   void begin(const Frame& frame) override {
-    const Viewport finer{frame.viewport.width * samples, frame.viewport.height * samples};
+    samples_ = std::clamp(
+        greatest_buffer_px / std::max(frame.viewport.width, frame.viewport.height), 1, 4);
+    const Viewport finer{frame.viewport.width * samples_, frame.viewport.height * samples_};
     if (!fine_ || fine_->viewport() != finer) fine_.emplace(finer, RasterOptions{right_setup});
     fine_->begin(frame.camera);
   }
@@ -156,17 +161,16 @@ class RoundedOutward : public FullSize {
   }
 
  private:
-  static constexpr int samples = 4;
-
   bool touched(int x, int y, float nearness) const {
-    for (int i = 0; i < samples * samples; ++i) {
-      if (fine_->nearness(x * samples + i % samples, y * samples + i / samples) > nearness) {
+    for (int i = 0; i < samples_ * samples_; ++i) {
+      if (fine_->nearness(x * samples_ + i % samples_, y * samples_ + i / samples_) > nearness) {
         return true;
       }
     }
     return false;
   }
 
+  int samples_ = 4;  // along a pixel's side
   std::optional<DepthRaster> fine_;
 };
 
@@ -212,6 +216,7 @@ class BoxesAsOccluders : public FullSize {
                       {2, 7, 3}, {2, 6, 7}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
     cube_ = RasterMesh(cube);
   }
+  std::size_t bytes() const override { return FullSize::bytes() + cube_.bytes(); }
 
  protected:
   void draw(ObjectId object, const BoxWindow*, const Frame& frame) override {
@@ -236,6 +241,9 @@ class OnePhase : public FullSize {
     FullSize::reset(seed);
     known_ = false;
     drawn_ = false;
+  }
+  std::size_t bytes() const override {
+    return FullSize::bytes() + (last_ ? last_->bytes() : 0) + (next_ ? next_->bytes() : 0);
   }
 
  protected:
