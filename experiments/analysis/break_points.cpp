@@ -31,6 +31,7 @@ SweepPoint point_of(const CellSummary* cell, const SweepLimit& limit) {
   point.guarantee = cell->guarantee;
   point.false_px = cell->false_px;
   point.false_jittered = cell->false_jittered;
+  point.wrong_px = cell->paints ? cell->surface_px : cell->drawn ? cell->image_px : cell->false_px;
   return point;
 }
 
@@ -49,7 +50,7 @@ double worst_allowed(const SweepLimit& limit, Guarantee guarantee, double first,
 bool breaks_a_promise(const SweepPoint& point) {
   if (point.state != State::measured) return false;
   if (point.guarantee == Guarantee::conservative) return point.false_px + point.false_jittered > 0;
-  return point.guarantee == Guarantee::image_exact && point.false_px > 0;
+  return point.guarantee == Guarantee::image_exact && point.wrong_px > 0;
 }
 
 /// What to say of a measured cell without the counter that the sweep asks for.

@@ -21,6 +21,9 @@ struct SweepPoint {
   double figure = 0.0;  // of the sweep's metric or counter; NaN if not measured
   Guarantee guarantee = Guarantee::conservative;
   std::uint64_t false_px = 0, false_jittered = 0;
+  /// Pixels that an image_exact method got wrong: of the image that it paints; else of the device's
+  /// image; else (nothing was drawn) those that it lost of truth.
+  std::uint64_t wrong_px = 0;
 };
 
 /// What a sweep says of one of its methods.
@@ -41,8 +44,8 @@ struct SweepVerdict {
   Agreement agreement = Agreement::nothing_expected;
   /// "METHOD has no counter 'x'; it has a, b", or empty.
   std::string missing_counter;
-  /// The first value of the dial at which a method that promises to be free of errors there lost an
-  /// undisputed pixel, or one that is conservative a jittered sample.
+  /// The first value of the dial at which a method broke what it promises there: a conservative one
+  /// lost an undisputed pixel or a jittered sample, an image_exact one has a wrong pixel.
   std::optional<std::size_t> broken_promise;
 
   bool was_measured() const;

@@ -11,8 +11,10 @@ namespace {
 constexpr std::size_t fewest_methods = 3;
 constexpr double most_triangles = 1.01;  // of the fewest, where nothing is drawn
 
+/// Methods that paint an image of their own are not to choose from: what they do takes the place of
+/// drawing, not of finding what to draw.
 bool is_right(const BlockSummary& block, const CellSummary& cell) {
-  return !cell.anchor && cell.guarantee != Guarantee::erroneous &&
+  return !cell.anchor && !cell.paints && cell.guarantee != Guarantee::erroneous &&
          cell.status == ResultCell::Status::done && is_free_of_errors(cell) &&
          cell.canonical.find('>') == std::string::npos && cost_ms(block, cell) > 0.0;
 }

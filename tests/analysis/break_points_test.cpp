@@ -195,6 +195,30 @@ TEST(BreakPoint, APromiseIsBrokenByALostRayToo) {
   EXPECT_FALSE(verdict_of(one_method(), exact).broken_promise) << "it promises only the pixels";
 }
 
+TEST(BreakPoint, APromiseAboutAnImageIsHeldToTheImage) {
+  const auto broken = [](auto&& change) {
+    return verdict_of(one_method({"over", false, {}, {}, {}}),
+                      cells_with(Guarantee::image_exact, change))
+        .broken_promise;
+  };
+  const auto lost_ray = [](std::size_t i, CellSummary& cell) { cell.false_px = i == 3 ? 1 : 0; };
+  EXPECT_EQ(broken(lost_ray), 3U) << "nothing was drawn";
+  EXPECT_FALSE(broken([&](std::size_t i, CellSummary& cell) {
+    lost_ray(i, cell);
+    cell.drawn = true;
+  })) << "the device's image is the same";
+  EXPECT_EQ(broken([](std::size_t i, CellSummary& cell) {
+              cell.drawn = true;
+              cell.image_px = i == 4 ? 1 : 0;
+            }),
+            4U);
+  EXPECT_EQ(broken([](std::size_t i, CellSummary& cell) {
+              cell.drawn = cell.paints = true;
+              cell.surface_px = i == 5 ? 1 : 0;
+            }),
+            5U);
+}
+
 TEST(BreakPoint, APromiseIsHeldToWhatTheMethodDeclaresAtThatValue) {
   // A parameter that the dial turns makes the method erroneous from the fifth value on.
   const auto cells = cells_with(Guarantee::conservative, [](std::size_t i, CellSummary& cell) {

@@ -112,6 +112,17 @@ TEST(Guide, MethodsWithErrorsChainsAnchorsAndNegativeControlsDoNotCount) {
   EXPECT_EQ(make_guides(enough)[0].rows[0].best->culler, "frustum.a");
 }
 
+TEST(Guide, MethodsThatPaintAnImageOfTheirOwnAreNotToChooseFrom) {
+  std::vector<CellSummary> cells{method("surface.zbuffer", 1.0, 1.0), method("depth.a", 2.0, 2.0),
+                                 method("depth.b", 3.0, 3.0), method("depth.c", 4.0, 4.0)};
+  cells[0].paints = true;
+  const std::vector<BlockSummary> blocks{block_with("s", cells)};
+  const auto guides = make_guides(blocks);
+  ASSERT_EQ(guides.size(), 1U);
+  EXPECT_EQ(guides[0].rows[0].best->culler, "depth.a");
+  EXPECT_EQ(guides[0].advice[0].eligible, 3U);
+}
+
 TEST(Guide, AdviceIsTheLeastMeanRatioAndTellsMovingScenesApart) {
   // a is best where things stand still, b where they move; c is never far off.
   const auto still =
