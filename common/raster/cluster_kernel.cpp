@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "common/geometry/rounding.h"
+#include "common/raster/margins.h"
 #include "common/raster/setup_constants.h"
 #include "common/raster/setup_kernel.h"
 
@@ -59,7 +60,7 @@ HWY_ATTR void find(const ClusterPlanes& planes, std::span<const RasterDraw> draw
     y[v] = hn::Load(d, planes.y.data() + v * double_lanes);
     z[v] = hn::Load(d, planes.z.data() + v * double_lanes);
     const auto constant = hn::Load(d, planes.d.data() + v * double_lanes);
-    w[v] = hn::MulAdd(hn::Abs(constant), set(1e-9), constant);
+    w[v] = hn::Add(hn::Mul(hn::Abs(constant), set(1e-9)), constant);
   }
   constexpr std::size_t near_plane = ClusterPlanes::lanes - 1;
   for (const RasterDraw& draw : draws) {
@@ -72,14 +73,14 @@ HWY_ATTR void find(const ClusterPlanes& planes, std::span<const RasterDraw> draw
       const WorldBox box = world_box(*draw.transform, cluster);
       bool outside = false;
       for (std::size_t v = 0; v < vectors; ++v) {
-        const auto at = hn::MulAdd(
-            x[v], set(box.center[0]),
-            hn::MulAdd(y[v], set(box.center[1]), hn::MulAdd(z[v], set(box.center[2]), w[v])));
-        const auto greatest =
-            hn::MulAdd(hn::Abs(x[v]), set(box.half[0]),
-                       hn::MulAdd(hn::Abs(y[v]), set(box.half[1]),
-                                  hn::MulAdd(hn::Abs(z[v]), set(box.half[2]), at)));
-        outside = outside || !hn::AllFalse(d, hn::Lt(greatest, hn::Zero(d)));
+        // Not fused: what is outside is told to callers, and must not depend on the processor.
+        const auto along = [&](Vector across, Vector up, Vector back, const auto& by) HWY_ATTR {
+          return hn::Add(hn::Mul(across, set(by[0])),
+                         hn::Add(hn::Mul(up, set(by[1])), hn::Mul(back, set(by[2]))));
+        };
+        const auto at = hn::Add(along(x[v], y[v], z[v], box.center), w[v]);
+        const auto reach = along(hn::Abs(x[v]), hn::Abs(y[v]), hn::Abs(z[v]), box.half);
+        outside = outside || !hn::AllFalse(d, hn::Lt(hn::Add(at, reach), hn::Zero(d)));
       }
       if (outside) continue;
       const std::uint32_t first = std::max(draw.first, cluster.first_triangle);
@@ -171,7 +172,7 @@ HWY_ATTR void transform(const WindowTransform& window, const WindowRows& rows,
   const auto least = [&](Vector v) HWY_ATTR { return hn::GetLane(hn::MinOfLanes(d, v)); };
   const auto most = [&](Vector v) HWY_ATTR { return hn::GetLane(hn::MaxOfLanes(d, v)); };
   // A graphics device may snap otherwise, and round window positions.
-  constexpr int margin = setup::subpixels / 32 + 1;
+  constexpr int margin = static_cast<int>(setup::subpixels * snapping_margin_px) + 1;
   const int reach = margin + (coverage == Coverage::centres ? 0 : setup::subpixels / 2);
   BoxWindow& box = where->window;
   box.x0 = std::max(0, setup::first_centre(static_cast<std::int32_t>(least(least_x)) - reach));
@@ -183,10 +184,10 @@ HWY_ATTR void transform(const WindowTransform& window, const WindowRows& rows,
   where->place = BoxPlace::outside;
   if (box.x0 >= box.x1 || box.y0 >= box.y1) return;
   const double depth = least(least_depth);
-  if (depth > window.camera().lens.far_m * (1.0 + 1e-6)) return;
+  if (depth > window.camera().lens.far_m * (1.0 + rounding_margin)) return;
   where->place = BoxPlace::inside;
   const double nearest = window.nearness(depth);
-  box.nearness = round_up(nearest + window.device_margin() + 1e-6 * std::abs(nearest));
+  box.nearness = round_up(nearest + window.device_margin() + rounding_margin * std::abs(nearest));
 }
 
 }  // namespace

@@ -225,6 +225,16 @@ std::uint32_t DepthRaster::id(int x, int y) const {
   return tiles_.id(tiles_.index(x / tile_size, y / tile_size), x % tile_size, y % tile_size);
 }
 
-std::size_t DepthRaster::bytes() const { return tiles_.bytes(); }
+std::size_t DepthRaster::bytes() const {
+  std::size_t bytes =
+      tiles_.bytes() + sizeof(Work) +
+      (work_->clusters.capacity() + work_->sorted.capacity()) * sizeof(ClusterDraw) +
+      work_->parts.capacity() * sizeof(SetupScratch) +
+      work_->places.capacity() * sizeof(ColumnPlaces);
+  for (const SetupScratch& part : work_->parts) {
+    bytes += part.blocks.capacity() * sizeof(TriangleBlock);
+  }
+  return bytes;
+}
 
 }  // namespace vislab

@@ -6,6 +6,8 @@
 // Guarantee: a pixel's nearness is the greatest of the triangles that cover it, bit for bit that of
 //   SetupTriangle::nearness_at, whatever the order of drawing, the instruction set and the number
 //   of threads; or the far plane's, if none does. With ids the first drawn keeps a tie.
+// Limits: bit for bit within a scene's coordinates (common/scene/scene.h: max_scene_coordinate_m).
+//   Triangles with coordinates of about 1e25 beside small ones may be drawn or not.
 // Cost: O(tiles) to begin; a draw is O(clusters) + O(vertices of those in the window) + O(tiles
 //   that triangles touch).
 // Sources: Greene, Kass, Miller 1993 (hierarchical z-buffer); Pineda 1988 (edge functions);
