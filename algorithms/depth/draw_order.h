@@ -29,6 +29,8 @@ class DrawKeys {
  public:
   explicit DrawKeys(DrawOrder order) : order_(order) {}
 
+  DrawOrder order() const { return order_; }
+
   /// Of random orders; the same seed gives the same keys.
   void reset(std::uint64_t seed) { seed_ = seed; }
   /// Once a frame or a call of cull().

@@ -2,10 +2,10 @@
 // subtrees at one question.
 //
 // Idea: nodes and objects of a bounding-volume hierarchy come out of a queue near first. Each box
-// is
-//   compared with a depth buffer that is drawn by software as the walk goes on: hidden nodes are
+//   is compared with a depth buffer that is drawn by software as the walk goes on: hidden nodes are
 //   dropped with all below them, visible objects are kept, and drawn into the buffer if they are
-//   large enough to hide others.
+//   large enough to hide others. What is far larger than the rest is drawn before the walk
+//   (large_occluders.h).
 // Guarantee: image_exact: boxes are enlarged and occluders' depths lowered by more than what a
 //   graphics device snaps and rounds; below full size only pixels that an occluder covers wholly
 //   count. What may be cut by the near plane is kept.
@@ -25,6 +25,7 @@
 #include "algorithms/depth/draw_order.h"
 #include "algorithms/depth/frame_buffer.h"
 #include "algorithms/depth/frustum_walk.h"
+#include "algorithms/depth/large_occluders.h"
 #include "algorithms/depth/occluders.h"
 #include "algorithms/depth/worth.h"
 #include "common/culler/registry.h"
@@ -42,6 +43,7 @@ using depth_culling::DrawKeys;
 using depth_culling::DrawOrder;
 using depth_culling::FrameBuffer;
 using depth_culling::FrustumWalk;
+using depth_culling::LargeOccluders;
 using depth_culling::ObjectOrder;
 using depth_culling::OccluderBudget;
 using depth_culling::OccluderMeshes;
@@ -131,6 +133,8 @@ class MaskedCuller : public ICuller {
   void build(const Scene& scene, const BuildContext&) override {
     scene_ = &scene;
     meshes_.build(scene);
+    large_.build(scene);
+    drawn_.resize(scene.object_count());
     followed_.build(scene);
     walk_.build(scene.object_count());
     stamps_.resize(scene.object_count());
@@ -146,6 +150,7 @@ class MaskedCuller : public ICuller {
 
   void reset(std::uint64_t seed) override {
     followed_.reset();
+    large_.reset();
     worth_.reset();
     buffer_.forget();
     keys_.reset(seed);
@@ -153,6 +158,7 @@ class MaskedCuller : public ICuller {
 
   void update(const Frame& frame, const Changes& changes) override {
     followed_.update(frame, changes);
+    large_.update(frame, changes);
     worth_.note(frame, changes);
   }
 
@@ -181,10 +187,11 @@ class MaskedCuller : public ICuller {
   }
 
   std::size_t bytes() const override {
-    return meshes_.bytes() + followed_.bytes() + walk_.bytes() + stamps_.bytes() + order_.bytes() +
-           emission_.bytes() + kept_.capacity() * sizeof(ObjectId) +
-           queue_.capacity() * sizeof(Item) + small_.capacity() * sizeof(Small) +
-           stack_.capacity() * sizeof(std::uint32_t) + buffer_.bytes();
+    return meshes_.bytes() + large_.bytes() + drawn_.bytes() + followed_.bytes() + walk_.bytes() +
+           stamps_.bytes() + order_.bytes() + emission_.bytes() +
+           kept_.capacity() * sizeof(ObjectId) + queue_.capacity() * sizeof(Item) +
+           small_.capacity() * sizeof(Small) + stack_.capacity() * sizeof(std::uint32_t) +
+           buffer_.bytes();
   }
 
   Counters counters() const override {
@@ -208,8 +215,10 @@ class MaskedCuller : public ICuller {
 
   void start(const Frame& frame) {
     work_ = {};
-    if (buffer_.start(frame)) {
+    begins_ = buffer_.start(frame);
+    if (begins_) {
       budget_.start();
+      drawn_.clear();
       const Viewport& size = buffer_.raster().viewport();
       work_.buffer_pixels =
           static_cast<std::uint64_t>(size.width) * static_cast<std::uint64_t>(size.height);
@@ -255,9 +264,22 @@ class MaskedCuller : public ICuller {
     }
     emission_.add(key, object);
     const std::uint32_t triangles = scene_->triangle_count(object);
-    if (!budget_.take(pixels(verdict, place), triangles)) return;
+    if (drawn_.contains(object) || !budget_.take(pixels(verdict, place), triangles)) return;
     const RasterDraw draw = meshes_.of(object, frame);
     buffer_.raster().draw({&draw, 1});
+    count_drawn(object);
+  }
+
+  void draw_large(const Frame& frame) {
+    large_.draw(
+        frame, meshes_, keys_, budget_, buffer_.raster(),
+        [&](ObjectId object) { return all_offered_ || stamps_.contains(object); },
+        [&](ObjectId object) { count_drawn(object); });
+  }
+
+  void count_drawn(ObjectId object) {
+    drawn_.insert(object);
+    const std::uint32_t triangles = scene_->triangle_count(object);
     work_.drawn_triangles += triangles;
     triangles_drawn_ += triangles;
   }
@@ -305,6 +327,8 @@ class MaskedCuller : public ICuller {
     const auto& structure = followed_.structure();
     const auto object_count = static_cast<std::uint32_t>(scene_->object_count());
     const std::span<const SpatialNode> nodes = structure.nodes();
+    // The other orders show what it is worth to have what is near, and large, first.
+    if (begins_ && keys_.order() == DrawOrder::near_first) draw_large(frame);
     queue_.clear();
     small_.clear();
     for (const ObjectId object : structure.unplaced()) push_object(frame, object);
@@ -335,6 +359,7 @@ class MaskedCuller : public ICuller {
         take(frame, item.id, item.key, verdict, place);
         continue;
       }
+      if (hidden_by_outline(index, nodes[index].box, verdict, place)) continue;
       for (const ObjectId object : structure.objects_at(index)) push_object(frame, object);
       for (std::uint32_t i = 0; i < nodes[index].child_count; ++i) {
         push_node(nodes, nodes[index].first_child + i);
@@ -379,9 +404,26 @@ class MaskedCuller : public ICuller {
         if (nodes[child].box.empty()) continue;
         const Verdict verdict = look(nodes[child].box, place);
         if (verdict == Verdict::hidden) count_hidden_node(child);
-        if (verdict >= Verdict::visible) stack_.push_back(child);
+        if (verdict >= Verdict::visible &&
+            !hidden_by_outline(child, nodes[child].box, verdict, place)) {
+          stack_.push_back(child);
+        }
       }
     }
+  }
+
+  /// Of a node that its rectangle leaves visible: is it hidden where it is really seen? Only asked
+  /// where the answer is worth more than it costs: of many objects on few pixels.
+  bool hidden_by_outline(std::uint32_t index, const Aabb& box, Verdict verdict,
+                         const BoxWindow& place) {
+    if (verdict != Verdict::visible || place.x1 - place.x0 > widest_outline_px ||
+        place.y1 - place.y0 > widest_outline_px ||
+        followed_.structure().count_below(index) < fewest_behind_outline ||
+        !hidden_in_outline(buffer_.raster(), *rays_, place, box)) {
+      return false;
+    }
+    count_hidden_node(index);
+    return true;
   }
 
   void push_object(const Frame& frame, ObjectId object) {
@@ -402,6 +444,8 @@ class MaskedCuller : public ICuller {
 
   /// Lists of fewer than one in so many objects are sorted instead of looked for in the hierarchy.
   static constexpr std::size_t short_list_share = 16;
+  static constexpr int widest_outline_px = 64;
+  static constexpr std::uint32_t fewest_behind_outline = 4;
 
   CullerInfo info_ = describe();
   int scale_;
@@ -411,6 +455,7 @@ class MaskedCuller : public ICuller {
   DrawKeys keys_;
   OccluderBudget budget_;
   OccluderMeshes meshes_;
+  LargeOccluders large_;
   FrameBuffer<Raster> buffer_;
   FollowedStructure<Bvh> followed_;
   FrustumWalk walk_;
@@ -420,6 +465,8 @@ class MaskedCuller : public ICuller {
   // Of one call of cull().
   Frustum frustum_;
   Worth::Work work_;
+  bool begins_ = true;  // it is the frame's first
+  ObjectStamps drawn_;  // into the buffer, in this frame
   bool all_offered_ = true;
   ObjectStamps stamps_;  // of what is offered, if that is a list
   std::optional<PixelRays> rays_;
