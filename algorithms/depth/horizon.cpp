@@ -10,7 +10,10 @@
 // Cost: O(k log k) for k nodes and objects that are not hidden by a node above them, and O(columns)
 //   for each test.
 // Limits: meshes without a closed, convex part hide nothing. One interval a column: what is covered
-//   above and below a gap is not known. Cameras that roll make rectangles in objects small.
+//   above and below a gap is not known. Cameras that roll make rectangles in objects small. The
+//   order is part of the method: an occluder may join only when all that is still to be looked at
+//   lies behind it, so there is no parameter `order`; depth.wrong[error=unsorted] shows what
+//   another one does.
 // Sources: Zachmann, Computer-Graphik 2, SS 2012, slides 44-46; Downs, Moeller and Sequin 2001.
 
 #include "algorithms/depth/horizon_culler.h"
@@ -49,8 +52,9 @@ CullerInfo describe() {
       "O(k log k) for k nodes and objects that no node above them hides, and O(columns of a box) "
       "for each test";
   info.limits =
-      "Only closed convex parts of meshes hide anything; one interval of rows a column. With "
-      "ground=assumed, what is seen below bridges and overhangs is lost.";
+      "Only closed convex parts of meshes hide anything; one interval of rows a column. Always "
+      "near first: another order is wrong (depth.wrong[error=unsorted]). With ground=assumed, what "
+      "is seen below bridges and overhangs is lost.";
   info.sources = {"Zachmann, Computer-Graphik 2, SS 2012, slides 44-46",
                   "Downs, Moeller and Sequin 2001, Occlusion Horizons for Driving through Urban "
                   "Scenery"};

@@ -49,6 +49,7 @@ void HorizonCuller::build(const Scene& scene, const BuildContext&) {
   parts_.clear();
   for (const Mesh& mesh : scene.meshes) parts_.push_back(convex_parts(mesh));
   kept_.reserve(scene.object_count());
+  offered_.resize(scene.object_count());
   tree_.build(scene);
 }
 
@@ -72,7 +73,8 @@ void HorizonCuller::cull(const Frame& frame, const Candidates& candidates, DrawS
   frame_ = frame.index;
   occluders_ = frame_covers_;
   std::ranges::make_heap(occluders_, farther);
-  if (everything) {
+  walks_list_ = !everything && note_offered(candidates, frame);
+  if (everything || walks_list_) {
     for (const ObjectId object : tree_.structure().unplaced()) add_object(object, frame);
     add_node(SpatialStructure::root, frame);
   } else {
@@ -109,7 +111,19 @@ void HorizonCuller::add_node(SpatialStructure::NodeIndex index, const Frame& fra
   std::ranges::push_heap(waiting_, later);
 }
 
+bool HorizonCuller::note_offered(const Candidates& candidates, const Frame& frame) {
+  std::size_t count = 0;
+  for (const auto run : candidates.object_runs()) count += run.size();
+  if (count * short_list_part < frame.objects.shown.size()) return false;
+  offered_.clear();
+  for (const auto run : candidates.object_runs()) {
+    for (const ObjectId object : run) offered_.insert(object);
+  }
+  return true;
+}
+
 void HorizonCuller::add_object(ObjectId object, const Frame& frame) {
+  if (walks_list_ && !offered_.contains(object)) return;
   ++boxes_tested_;
   Waiting item{{}, object, false};
   switch (project_box(window_, frame.objects.bounds[object], Coverage::centres, item.place)) {
@@ -183,7 +197,8 @@ double HorizonCuller::error_factor(ObjectId object) const {
 }
 
 std::size_t HorizonCuller::bytes() const {
-  std::size_t bytes = tree_.bytes() + horizon_.bytes();
+  std::size_t bytes =
+      tree_.bytes() + horizon_.bytes() + offered_.bytes() + parts_.capacity() * sizeof(parts_[0]);
   for (const std::vector<ConvexPart>& parts : parts_) bytes += bytes_of(parts);
   bytes += waiting_.capacity() * sizeof(Waiting) + kept_.capacity() * sizeof(ObjectId);
   return bytes + (occluders_.capacity() + frame_covers_.capacity()) * sizeof(Occluder);

@@ -13,6 +13,7 @@
 #include "algorithms/depth/convex_parts.h"
 #include "algorithms/depth/horizon_columns.h"
 #include "common/culler/culler.h"
+#include "common/culler/stamps.h"
 #include "common/spatial/bvh.h"
 #include "common/spatial/followed_structure.h"
 
@@ -54,6 +55,12 @@ class HorizonCuller : public ICuller {
     ObjectId object = 0;
   };
 
+  /// Lists shorter than this part of what is shown are looked at one by one, longer ones through
+  /// the hierarchy: what it hides of them costs nothing by itself.
+  static constexpr std::size_t short_list_part = 16;
+
+  /// False if the list is short; else what it holds is noted.
+  bool note_offered(const Candidates& candidates, const Frame& frame);
   void add_node(SpatialStructure::NodeIndex node, const Frame& frame);
   void add_object(ObjectId object, const Frame& frame);
   void look_at_waiting(const Frame& frame);
@@ -75,6 +82,8 @@ class HorizonCuller : public ICuller {
   std::vector<Occluder> occluders_;     // heap, by their farthest point, the nearest of them first
   std::vector<Occluder> frame_covers_;  // all that this frame's calls have kept
   std::vector<ObjectId> kept_;
+  ObjectStamps offered_;     // of a long list
+  bool walks_list_ = false;  // through the hierarchy
   std::uint64_t boxes_tested_ = 0, nodes_tested_ = 0, rectangles_joined_ = 0;
 };
 

@@ -71,8 +71,8 @@ class TwoPassCuller final : public depth_culling::TreeCuller<Structure> {
     });
     if (this->draw_now()) again = true;
     for (const Passed& object : passed_) {
-      const bool hidden =
-          again && object.verdict == BoxVerdict::visible && this->hides_now(object.place);
+      const bool hidden = again && object.verdict == BoxVerdict::visible &&
+                          this->hides_now(object.object, object.place);
       if (!hidden) this->kept().push_back(object.object);
     }
   }

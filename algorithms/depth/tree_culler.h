@@ -100,6 +100,7 @@ class TreeCuller : public ICuller {
       return;
     }
     work_ = {};
+    hidden_by_themselves_ = 0;
     start(frame);
     const std::size_t offered = take(frame, candidates);
     kept_.clear();
@@ -107,9 +108,10 @@ class TreeCuller : public ICuller {
     // Each is offered once in a frame, so it is here once.
     seen_.insert(seen_.end(), kept_.begin(), kept_.end());
     out.objects(kept_);
-    if (!everything_) work_.hidden_objects = offered - outside_ - kept_.size();
-    work_.hidden_triangles = static_cast<std::uint64_t>(static_cast<double>(work_.hidden_objects) *
-                                                        triangles_an_object_);
+    if (!everything_) {
+      work_.hidden_objects = offered - outside_ - kept_.size();
+      count_triangles(work_.hidden_objects - hidden_by_themselves_);
+    }
     queries_ += work_.queries;
     drawn_triangles_ += work_.drawn_triangles;
     worth_.add(work_);
@@ -137,10 +139,10 @@ class TreeCuller : public ICuller {
 
   /// Is an object hidden by now that was not when its place was found? By its rectangle: another
   /// look at silhouettes would cost more than it saves.
-  bool hides_now(const BoxWindow& place) {
+  bool hides_now(ObjectId object, const BoxWindow& place) {
     ++work_.queries;
     const bool hidden = buffer_->hides(place);
-    if (hidden && everything_) ++work_.hidden_objects;
+    if (hidden) count_hidden(object);
     return hidden;
   }
 
@@ -212,7 +214,7 @@ class TreeCuller : public ICuller {
       if (verdict == BoxVerdict::outside) {
         ++outside_;
       } else if (verdict == BoxVerdict::hidden) {
-        if (everything_) ++work_.hidden_objects;
+        count_hidden(object);
       } else {
         see(object, verdict, place);
       }
@@ -275,6 +277,19 @@ class TreeCuller : public ICuller {
     }
   }
 
+  /// An object that was asked about by itself: of a scene's objects, those that hide and are hidden
+  /// may be of very different sizes.
+  void count_hidden(ObjectId object) {
+    ++hidden_by_themselves_;
+    work_.hidden_triangles += scene_->triangle_count(object);
+    if (everything_) ++work_.hidden_objects;
+  }
+  /// Of objects that were hidden with a node.
+  void count_triangles(std::uint64_t objects) {
+    work_.hidden_triangles +=
+        static_cast<std::uint64_t>(static_cast<double>(objects) * triangles_an_object_);
+  }
+
   BoxVerdict look_at(const Aabb& box, BoxWindow& place) {
     ++work_.queries;
     return buffer_->look_at(box, place);
@@ -317,6 +332,7 @@ class TreeCuller : public ICuller {
     const BoxVerdict verdict = look_at(tree_.box(node), place);
     if (verdict == BoxVerdict::hidden && everything_) {
       work_.hidden_objects += tree_.count_below(node);
+      count_triangles(tree_.count_below(node));
     }
     if (verdict == BoxVerdict::outside || verdict == BoxVerdict::hidden) return;
     push_objects(tree_.structure().objects_at(node), frame);
@@ -367,6 +383,7 @@ class TreeCuller : public ICuller {
   bool few_offered_ = false;
   ObjectStamps offered_;     // unless it is everything or few
   std::size_t outside_ = 0;  // objects found outside one by one
+  std::size_t hidden_by_themselves_ = 0;
   std::vector<ObjectId> kept_;
   ObjectOrder order_;
   std::vector<Item> queue_;  // a heap
