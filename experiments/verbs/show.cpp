@@ -58,7 +58,8 @@ int show(const Lab& lab, const ShowCall& call) {
   if (!run.surfaces[last].empty()) {
     write_surface_picture(scene, frame, truth.frame(last),
                           {{lab.cullers.short_name(call.culler), run.surfaces[last]}},
-                          scene.name + ", frame " + std::to_string(last) + ": who owns each pixel",
+                          scene.name + ", frame " + std::to_string(last) +
+                              ": who owns each pixel; wrong ones in vermillion",
                           call.output);
     std::cerr << "wrote " << call.output.string() << '\n';
     return 0;
