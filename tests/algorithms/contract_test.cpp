@@ -22,6 +22,14 @@ Registry all_cullers() {
   return registry;
 }
 
+/// What a parameter may be switched to: its choices, or a switch's other position.
+std::vector<std::string> others_of(const ParameterSpec& parameter) {
+  std::vector<std::string> others = parameter.choices;
+  if (parameter.type == ParameterSpec::Type::boolean) others = {"false", "true"};
+  std::erase(others, parameter.default_value);
+  return others;
+}
+
 /// `culler` with every pair of choices of two parameters of its build. What only several parameters
 /// together break (a volume that does not fit a structure, a builder in a rebuild) shows in pairs.
 std::vector<std::string> pairs_of_build_choices(const CullerInfo& culler) {
@@ -48,18 +56,16 @@ std::vector<std::string> pairs_of_build_choices(const CullerInfo& culler) {
   return specs;
 }
 
-/// Every culler with its defaults, with each choice of each parameter, and with pairs of those that
-/// it is built by; and the chains.
+/// Every culler with its defaults, with each choice or switch of each parameter, and with pairs of
+/// those that it is built by; and the chains.
 std::vector<std::string> specs_under_contract() {
   std::vector<std::string> specs;
   const Registry registry = all_cullers();
   for (const auto& [name, entry] : registry.entries()) {
     specs.push_back(name);
     for (const ParameterSpec& parameter : entry.info.parameters) {
-      for (const std::string& choice : parameter.choices) {
-        if (choice != parameter.default_value) {
-          specs.push_back(name + "[" + parameter.name + "=" + choice + "]");
-        }
+      for (const std::string& other : others_of(parameter)) {
+        specs.push_back(name + "[" + parameter.name + "=" + other + "]");
       }
     }
     for (std::string& pair : pairs_of_build_choices(entry.info)) specs.push_back(std::move(pair));
