@@ -88,23 +88,6 @@ double LargeOccluders::about_pixels(const Frame& frame, const Aabb& box) {
   return std::numbers::pi * radius * radius * px_per_m * px_per_m;
 }
 
-void LargeOccluders::draw_visible(DepthRaster& raster) {
-  raster.draw_visible(draws_, boxes_, order_, hidden_);
-}
-
-void LargeOccluders::draw_visible(MaskedDepth& raster) {
-  for (const std::uint32_t slot : order_) {
-    hidden_[slot] = 0;
-    if (boxes_[slot / BoxColumns::width].always >> (slot % BoxColumns::width) & 1U) {
-      raster.draw({&draws_[slot], 1});
-      continue;
-    }
-    const Aabb box = boxes_[slot / BoxColumns::width].box(slot % BoxColumns::width);
-    hidden_[slot] = raster.hides(box) ? 1 : 0;
-    if (hidden_[slot] == 0) raster.draw({&draws_[slot], 1});
-  }
-}
-
 void LargeOccluders::place(std::size_t slot, const Aabb& box) {
   boxes_[slot / BoxColumns::width].put(slot % BoxColumns::width, box);
 }

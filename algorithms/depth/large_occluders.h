@@ -21,7 +21,6 @@
 #include "algorithms/depth/draw_order.h"
 #include "algorithms/depth/occluders.h"
 #include "common/raster/depth_raster.h"
-#include "common/raster/masked_depth.h"
 #include "common/scene/frame.h"
 
 namespace vislab::depth_culling {
@@ -38,9 +37,9 @@ class LargeOccluders {
   /// Draws large objects that are shown and for which offered(object), in the order of the keys,
   /// as the budget allows, unless they are hidden by those before; calls drawn(object) for each
   /// that was drawn.
-  template <typename Raster, typename Offered, typename Drawn>
+  template <typename Offered, typename Drawn>
   void draw(const Frame& frame, const OccluderMeshes& meshes, const DrawKeys& keys,
-            OccluderBudget& budget, Raster& raster, Offered&& offered, Drawn&& drawn) {
+            OccluderBudget& budget, DepthRaster& raster, Offered&& offered, Drawn&& drawn) {
     by_key_.clear();
     for (std::uint32_t slot = 0; slot < objects_.size(); ++slot) {
       const Aabb& box = frame.objects.bounds[objects_[slot]];
@@ -54,7 +53,7 @@ class LargeOccluders {
       draws_[slot] = meshes.of(objects_[slot], frame);
       if (budget.take(px, draws_[slot].count)) order_.push_back(slot);
     }
-    draw_visible(raster);
+    raster.draw_visible(draws_, boxes_, order_, hidden_);
     for (const std::uint32_t slot : order_) {
       if (hidden_[slot] == 0) drawn(objects_[slot]);
     }
@@ -64,8 +63,6 @@ class LargeOccluders {
 
  private:
   static double about_pixels(const Frame& frame, const Aabb& box);
-  void draw_visible(DepthRaster& raster);
-  void draw_visible(MaskedDepth& raster);
   void place(std::size_t slot, const Aabb& box);
   std::size_t slot_of(ObjectId object) const;
 

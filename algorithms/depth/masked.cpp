@@ -21,6 +21,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <type_traits>
 
 #include "algorithms/depth/draw_order.h"
 #include "algorithms/depth/frame_buffer.h"
@@ -270,6 +271,7 @@ class MaskedCuller : public ICuller {
     count_drawn(object);
   }
 
+  /// Not into layers: what far large things leave there is lost when near things come.
   void draw_large(const Frame& frame) {
     large_.draw(
         frame, meshes_, keys_, budget_, buffer_.raster(),
@@ -328,7 +330,9 @@ class MaskedCuller : public ICuller {
     const auto object_count = static_cast<std::uint32_t>(scene_->object_count());
     const std::span<const SpatialNode> nodes = structure.nodes();
     // The other orders show what it is worth to have what is near, and large, first.
-    if (begins_ && keys_.order() == DrawOrder::near_first) draw_large(frame);
+    if constexpr (std::is_same_v<Raster, DepthRaster>) {
+      if (begins_ && keys_.order() == DrawOrder::near_first) draw_large(frame);
+    }
     queue_.clear();
     small_.clear();
     for (const ObjectId object : structure.unplaced()) push_object(frame, object);

@@ -286,8 +286,21 @@ class SetUp {
 
     // Edges, counter-clockwise.
     const auto sense = hn::IfThenElse(hn::Lt(area, zero), set(-1.0), set(1.0));
+    auto inset = zero;
+    if (options_.coverage == Coverage::whole_pixels) {
+      inset = set(setup::whole_pixel_inset);
+    } else if (options_.rounding == DepthRounding::lowered) {
+      const auto right = set(setup::subpixels * window_.viewport().width);
+      const auto top = set(setup::subpixels * window_.viewport().height);
+      for (const Corner& corner : v) {
+        const auto beside = hn::Or(hn::Lt(corner.snapped_x, zero), hn::Gt(corner.snapped_x, right));
+        const auto above = hn::Or(hn::Lt(corner.snapped_y, zero), hn::Gt(corner.snapped_y, top));
+        inset = hn::IfThenElse(hn::Or(beside, above), set(setup::border_inset), inset);
+      }
+    }
     Vector edge_a[5], edge_b[5], edge_c[5];
-    const auto edge = [&](std::size_t e, const Corner& from, const Corner& to) HWY_ATTR {
+    const auto edge = [&](std::size_t e, const Corner& from, const Corner& to,
+                          Vector inward) HWY_ATTR {
       const auto ea = hn::Mul(sense, hn::Sub(from.snapped_y, to.snapped_y));
       const auto eb = hn::Mul(sense, hn::Sub(to.snapped_x, from.snapped_x));
       const auto level = hn::Eq(ea, zero);
@@ -295,18 +308,16 @@ class SetUp {
       auto at = hn::Add(hn::Mul(ea, hn::Sub(half, from.snapped_x)),
                         hn::Mul(eb, hn::Sub(half, from.snapped_y)));
       at = hn::Sub(at, hn::IfThenElse(owns, zero, set(1.0)));
-      if (options_.coverage == Coverage::whole_pixels) {
-        at = hn::Sub(at, hn::Mul(hn::Add(hn::Abs(ea), hn::Abs(eb)), set(setup::subpixels / 2 + 1)));
-      }
+      at = hn::Sub(at, hn::Mul(hn::Add(hn::Abs(ea), hn::Abs(eb)), inward));
       at = hn::Floor(hn::Mul(at, by_grid));
       edge_a[e] = ea;
       edge_b[e] = eb;
       edge_c[e] = hn::Add(at, hn::Add(hn::Mul(ea, anchor_x), hn::Mul(eb, anchor_y)));
     };
-    edge(0, v[0], v[1]);
-    edge(1, v[1], v[2]);
-    edge(2, v[2], v[3]);
-    edge(3, v[3], v[0]);
+    edge(0, v[0], v[1], inset);
+    edge(1, v[1], v[2], inset);
+    edge(2, v[2], v[3], inset);
+    edge(3, v[3], v[0], inset);
     // A triangle has no fourth edge.
     edge_c[3] = hn::IfThenElseZero(pair, edge_c[3]);
 
@@ -341,7 +352,7 @@ class SetUp {
     scratch_.drawn += static_cast<std::size_t>(std::popcount(kept) + std::popcount(kept & pairs));
     Diagonal diagonal;
     if (apart_) {
-      edge(4, v[0], v[2]);
+      edge(4, v[0], v[2], zero);
       hn::Store(edge_a[4], d, diagonal.a.data());
       hn::Store(edge_b[4], d, diagonal.b.data());
       hn::Store(edge_c[4], d, diagonal.c.data());

@@ -137,16 +137,27 @@ bool set_plane(SetupTriangle& t, const std::array<Homogeneous, 3>& corners, bool
   return true;
 }
 
-WindowEdge edge(const Snapped& p, const Snapped& q, Coverage coverage) {
+/// By how many steps of the grid a triangle's or pair's outer edges are moved inward.
+template <std::size_t count>
+std::int64_t inset(const std::array<Snapped, count>& corners, const Viewport& viewport,
+                   const SetupOptions& options) {
+  if (options.coverage == Coverage::whole_pixels) return setup::whole_pixel_inset;
+  if (options.rounding == DepthRounding::nearest) return 0;
+  const bool leaves = std::ranges::any_of(corners, [&](const Snapped& corner) {
+    return corner.x < 0 || corner.y < 0 || corner.x > subpixels * viewport.width ||
+           corner.y > subpixels * viewport.height;
+  });
+  return leaves ? setup::border_inset : 0;
+}
+
+WindowEdge edge(const Snapped& p, const Snapped& q, std::int64_t inset) {
   const std::int64_t a = std::int64_t{p.y} - q.y;
   const std::int64_t b = std::int64_t{q.x} - p.x;
   // Left edges run down, top edges run left: the inside is to the left of an edge.
   const bool owns_border = a > 0 || (a == 0 && b < 0);
   std::int64_t value = a * (subpixels / 2 - std::int64_t{p.x}) +
                        b * (subpixels / 2 - std::int64_t{p.y}) - (owns_border ? 0 : 1);
-  if (coverage == Coverage::whole_pixels) {
-    value -= (std::abs(a) + std::abs(b)) * (subpixels / 2 + 1);
-  }
+  value -= (std::abs(a) + std::abs(b)) * inset;
   return {value >> 8, static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)};
 }
 
@@ -200,8 +211,8 @@ SetupResult set_up_triangle(const WindowTransform& window,
     SetupTriangle& t = out[static_cast<std::size_t>(result.count)];
     if (!set_pixels(t, std::array{p, q, r}, window.viewport())) continue;
     if (!set_plane(t, v, perspective, options)) continue;
-    t.edges = {edge(p, q, options.coverage), edge(q, r, options.coverage),
-               edge(r, p, options.coverage), WindowEdge{}};
+    const std::int64_t inward = inset(std::array{p, q, r}, window.viewport(), options);
+    t.edges = {edge(p, q, inward), edge(q, r, inward), edge(r, p, inward), WindowEdge{}};
     t.id = id;
     ++result.count;
   }
@@ -235,15 +246,19 @@ bool set_up_pair(const WindowTransform& window, const std::array<WindowPoint, 4>
   both.id = id;
   if (set_pixels(both, corners, window.viewport())) {
     if (!set_plane(both, {v[0], v[1], v[2]}, perspective, options)) return false;
+    const std::int64_t inward = inset(corners, window.viewport(), options);
+    const auto line = [&](const Snapped& from, const Snapped& to, std::int64_t by) {
+      return front ? edge(from, to, by) : edge(to, from, by);
+    };
     const auto side = [&](const Snapped& from, const Snapped& to) {
-      return front ? edge(from, to, options.coverage) : edge(to, from, options.coverage);
+      return line(from, to, inward);
     };
     both.edges = {side(p, q), side(q, r), side(r, s), side(s, p)};
     out = {both, both};
     result.count = 1;
     if (options.coverage == Coverage::centres) {
-      out[0].edges = {side(p, q), side(q, r), side(r, p), WindowEdge{}};
-      out[1].edges = {side(p, r), side(r, s), side(s, p), WindowEdge{}};
+      out[0].edges = {side(p, q), side(q, r), line(r, p, 0), WindowEdge{}};
+      out[1].edges = {line(p, r, 0), side(r, s), side(s, p), WindowEdge{}};
       out[1].id = id + 1;
       result.count = 2;
     }

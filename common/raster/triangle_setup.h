@@ -10,6 +10,9 @@
 //   triangle, by more than snapping can move an edge.
 // Depth: exact up to rounding, or (lowered) never nearer than the triangle is: the plane is lowered
 //   by a bound of what rounding can do, and with whole_pixels to its farthest value in the pixel.
+// Border: lowered triangles that leave the image lose the step of the grid along their edges by
+// which
+//   a device that clips before it snaps may cover less.
 // Limits: what lies within 1/512 pixel of an edge may be drawn or not, by snapping. Triangles that
 //   are seen edge-on, up to rounding, are not drawn. Window positions beyond 32,768 pixels are
 //   clipped.
