@@ -156,6 +156,39 @@ TEST(TriangleSetup, LoweredDepthsAndWholePixelsAreNeverTooMuch) {
   EXPECT_GT(covered, 100'000U);
 }
 
+TEST(TriangleSetup, LoweredTrianglesThatLeaveTheImageStayWithinTheirEdges) {
+  const Viewport size{160, 90};
+  const WindowTransform window(plain_camera(size), size);
+  Random random(33);
+  std::size_t covered = 0, beside = 0;
+  for (int trial = 0; trial < 4000; ++trial) {
+    // An edge runs past the centre of a pixel by about what snapping can move it, and out of the
+    // image.
+    const int x = static_cast<int>(random.below(160)), y = static_cast<int>(random.below(90));
+    const double turn = random.uniform(0.0, 6.283);
+    const double dx = std::cos(turn), dy = std::sin(turn);
+    const double past = random.uniform(-2.0, 2.0) / 256.0;
+    const double cx = x + 0.5 - dy * past, cy = y + 0.5 + dx * past;
+    const auto along = [&](double far, double aside) {
+      return at(cx + far * dx - aside * dy, cy + far * dy + aside * dx, random.uniform(1.5, 40.0));
+    };
+    const Corners t{{along(-random.uniform(200.0, 400.0), 0.0),
+                     along(random.uniform(5.0, 90.0), 0.0),
+                     along(random.uniform(-50.0, 50.0), random.uniform(20.0, 90.0))}};
+    std::array<SetupTriangle, max_setup_pieces> pieces;
+    const SetupResult result =
+        set_up_triangle(window, t.p, 0, {Coverage::centres, DepthRounding::lowered}, pieces);
+    ASSERT_LE(result.count, 1);
+    const bool exact = inside_by(t, x + 0.5, y + 0.5) >= 0.0;
+    const bool drawn = result.count == 1 && pieces[0].covers(x, y);
+    EXPECT_FALSE(drawn && !exact) << trial;
+    covered += drawn ? 1 : 0;
+    beside += exact ? 0 : 1;
+  }
+  EXPECT_GT(covered, 200U);
+  EXPECT_GT(beside, 1000U);
+}
+
 TEST(TriangleSetup, PairsAreThePartitionOfTheirQuadrilateral) {
   const Viewport size{160, 90};
   const WindowTransform window(plain_camera(size), size);
