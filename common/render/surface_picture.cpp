@@ -13,12 +13,13 @@ namespace {
 
 constexpr Color paper = {255, 255, 255};
 constexpr double margin = 16.0;
-// Three panels fill a page's width, on which a letter of 24 pixels is one of 7 points.
-constexpr double title_height = 52.0;
-constexpr double caption_height = 70.0;
-constexpr double title_size = 26.0;
-constexpr double caption_size = 24.0;
-constexpr int most_columns = 3;
+// On paper a picture is at most 9 cm high: two rows of four panels fill a page's width, and a letter
+// of 34 pixels is one of 7 points.
+constexpr double title_height = 60.0;
+constexpr double caption_height = 96.0;
+constexpr double title_size = 36.0;
+constexpr double caption_size = 34.0;
+constexpr int most_columns = 4;
 constexpr int panel_side = 512;  // about; at least one pixel a pixel
 
 /// Of the palette of Okabe and Ito (2008), without orange and vermillion.
@@ -78,13 +79,13 @@ Image render_surface_picture(const Scene& scene, const Viewport& viewport, const
   const double row_height = caption_height + height + margin;
   Canvas canvas(static_cast<int>(margin + columns * (width + margin)),
                 static_cast<int>(title_height + rows * row_height), paper);
-  canvas.text(margin, 36.0, columns * (width + margin) - margin, title_size, true, title);
+  canvas.text(margin, 42.0, columns * (width + margin) - margin, title_size, true, title);
   for (int i = 0; i < count; ++i) {
     const SurfacePanel& panel = panels[static_cast<std::size_t>(i)];
     const double left = margin + (i % columns) * (width + margin);
     const double top = title_height + (i / columns) * row_height;
-    canvas.text(left, top + 26.0, width, caption_size, true, panel.caption);
-    canvas.text(left, top + 56.0, width, caption_size, false, panel.note);
+    canvas.text(left, top + 36.0, width, caption_size, true, panel.caption);
+    canvas.text(left, top + 78.0, width, caption_size, false, panel.note);
     canvas.picture(image_of(scene, viewport, panel), {0, 0}, {viewport.width, viewport.height},
                    left, top + caption_height, width, height);
   }
