@@ -117,13 +117,13 @@ class ICuller {
   virtual void update(const Frame& /*frame*/, const Changes& /*changes*/) {}
   /// From-region methods: emits the set of a cell and returns true.
   virtual bool region(CellId /*cell*/, DrawSink& /*out*/) { return false; }
-  /// Hidden-surface algorithms: the image that the last cull() painted, which is what they are judged
-  /// by beside the set: the triangle that owns each pixel, row by row from the bottom, none_id for
-  /// the background. Empty for methods that paint none. Valid until the next cull().
+  /// Hidden-surface algorithms: the image that the last cull() painted, which is what they are
+  /// judged by beside the set: the triangle that owns each pixel, row by row from the bottom,
+  /// none_id for the background. Empty for methods that paint none. Valid until the next cull().
   virtual std::span<const TriangleId> surface_image() const { return {}; }
-  /// Memory that it holds now beside the scene: what build() made, and all lists and buffers that it
-  /// keeps from frame to frame. What is published is the answer after build(): buffers of an image's
-  /// size, which the first frame makes, are not in it.
+  /// Memory that it holds now beside the scene: what build() made, and all lists and buffers that
+  /// it keeps from frame to frame. What is published is the answer after build(): buffers of an
+  /// image's size, which the first frame makes, are not in it.
   virtual std::size_t bytes() const { return 0; }
   virtual Counters counters() const { return {}; }
 };

@@ -6,10 +6,10 @@
 namespace vislab::setup {
 
 inline constexpr int subpixels = 256;
-// Steps of the grid by which edges are moved inward. For whole pixels half a pixel and the step that
-// snapping takes. At the image's border a device may clip a triangle before it snaps, so that an
-// edge runs up to a step beside ours: where depths have to be safe, edges of what leaves the image
-// stay within.
+// Steps of the grid by which edges are moved inward. For whole pixels half a pixel and the step
+// that snapping takes. At the image's border a device may clip a triangle before it snaps, so that
+// an edge runs up to a step beside ours: where depths have to be safe, edges of what leaves the
+// image stay within.
 inline constexpr int whole_pixel_inset = subpixels / 2 + 1;
 inline constexpr int border_inset = 1;
 inline constexpr double greatest_position = 32'768.0;  // pixels

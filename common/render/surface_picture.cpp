@@ -13,8 +13,8 @@ namespace {
 
 constexpr Color paper = {255, 255, 255};
 constexpr double margin = 16.0;
-// On paper a picture is at most 9 cm high: two rows of four panels fill a page's width, and a letter
-// of 34 pixels is one of 7 points.
+// On paper a picture is at most 9 cm high: two rows of four panels fill a page's width, and a
+// letter of 34 pixels is one of 7 points.
 constexpr double title_height = 60.0;
 constexpr double caption_height = 96.0;
 constexpr double title_size = 36.0;
