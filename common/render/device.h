@@ -1,8 +1,10 @@
 // What a culler or the harness may ask of a graphics device: draw objects, ask how many samples a
-// box would add. One implementation draws with OSMesa; decorators may time or model it.
+// box would add. One implementation draws with OSMesa, one models a graphics processor; decorators
+// may time or record either.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -10,7 +12,13 @@
 
 namespace vislab {
 
-using QueryId = std::uint32_t;
+/// A query of one frame. Devices tell an id of an earlier frame from those of this one, however
+/// often the places behind them are used again: std::logic_error.
+struct QueryId {
+  std::uint32_t frame = 0;  // counted by the device
+  std::uint32_t index = 0;  // within the frame
+  friend bool operator==(const QueryId&, const QueryId&) = default;
+};
 
 class RenderDevice {
  public:
@@ -40,8 +48,9 @@ class RenderDevice {
   /// Valid until the next call of cull_back_faces, begin_frame or load.
   virtual std::span<const ObjectId> one_sided() const = 0;
 
-  /// Asks how many samples of the image the faces of these world boxes would add to what is drawn
-  /// so far; writes neither ids nor depth. The boxes must not touch the near region (see
+  /// Asks how many samples of the image the front faces of these world boxes would add to what is
+  /// drawn so far; writes neither ids nor depth. One box adds each of its pixels once; a pixel of
+  /// several boxes counts for each. The boxes must not touch the near region (see
   /// touches_near_region). Valid until the next begin_frame.
   virtual QueryId query(std::span<const Aabb> boxes) = 0;
 
@@ -54,6 +63,10 @@ class RenderDevice {
 
   /// Waits until everything is drawn.
   virtual void finish() = 0;
+
+  /// Milliseconds since begin_frame by the device's own clock, if it keeps one: the time of a
+  /// modelled device is no one else's. None if its calls take real time.
+  virtual std::optional<double> clock_ms() const { return std::nullopt; }
 
   /// Name and version of the renderer, for the context of results.
   virtual std::string description() const = 0;

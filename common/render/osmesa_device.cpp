@@ -99,7 +99,8 @@ class OsMesaDevice::Implementation {
   std::array<GLuint, 2> renderbuffers_{};
   GLint largest_side_ = 0;
   std::vector<GLuint> query_names_;
-  std::size_t queries_used_ = 0;
+  std::uint32_t queries_used_ = 0;
+  std::uint32_t frame_ = 0;  // counts begin_frame
 
   bool in_frame_ = false;
   Viewport viewport_{0, 0};
@@ -189,6 +190,7 @@ void OsMesaDevice::Implementation::begin_frame(const Frame& frame) {
   gl.ClearBufferuiv(GL_COLOR, 0, nothing);
   gl.ClearBufferfv(GL_DEPTH, 0, &far_depth);
   queries_used_ = 0;
+  ++frame_;
   in_frame_ = true;
   context_.check("begin_frame");
 }
@@ -236,6 +238,14 @@ void OsMesaDevice::Implementation::select(const GlFunctions& gl, ProgramName pro
   gl.DepthMask(asks ? GL_FALSE : GL_TRUE);
   gl.ColorMask(!asks, !asks, !asks, !asks);
   gl.DepthFunc(asks ? GL_LEQUAL : GL_LESS);
+  // Of a box only the front: whatever sample a back face covers is covered by a nearer front face.
+  if (asks) {
+    gl.Enable(GL_CULL_FACE);
+    gl.CullFace(GL_BACK);
+    gl.FrontFace(GL_CCW);
+  } else {
+    gl.Disable(GL_CULL_FACE);
+  }
   selected_ = program;
 }
 
@@ -294,8 +304,8 @@ QueryId OsMesaDevice::Implementation::query(std::span<const Aabb> boxes) {
     query_names_.resize(query_names_.size() + 64);
     gl.CreateQueries(GL_SAMPLES_PASSED, 64, &query_names_[queries_used_]);
   }
-  const auto id = static_cast<QueryId>(queries_used_++);
-  gl.BeginQuery(GL_SAMPLES_PASSED, query_names_[id]);
+  const QueryId id{frame_, queries_used_++};
+  gl.BeginQuery(GL_SAMPLES_PASSED, query_names_[id.index]);
   if (!boxes.empty()) {
     corner_stream_.upload(gl, box_corners_, corners_.data(), corners_.size() * sizeof(corners_[0]));
     gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(36 * boxes.size()), GL_UNSIGNED_INT,
@@ -307,11 +317,16 @@ QueryId OsMesaDevice::Implementation::query(std::span<const Aabb> boxes) {
 }
 
 GLuint OsMesaDevice::Implementation::query_name(QueryId query) const {
-  if (query >= queries_used_) throw std::logic_error("OsMesaDevice: no such query in this frame");
-  return query_names_[query];
+  if (query.frame != frame_ || query.index >= queries_used_) {
+    throw std::logic_error("OsMesaDevice: no such query in this frame");
+  }
+  return query_names_[query.index];
 }
 
-void OsMesaDevice::Implementation::flush() { context_.make_current().Flush(); }
+void OsMesaDevice::Implementation::flush() {
+  context_.make_current().Flush();
+  context_.check("flush");
+}
 
 bool OsMesaDevice::Implementation::ready(QueryId query) {
   GLuint64 available = 0;

@@ -307,11 +307,11 @@ class ListeningDevice : public RenderDevice {
   std::span<const ObjectId> one_sided() const override { return {}; }
   QueryId query(std::span<const Aabb>) override {
     drawn_before_query_.push_back(drawn_);
-    return static_cast<QueryId>(drawn_before_query_.size() - 1);
+    return {0, static_cast<std::uint32_t>(drawn_before_query_.size() - 1)};
   }
   void flush() override {}
   bool ready(QueryId) override { return true; }
-  std::uint64_t samples(QueryId query) override { return query % 2 == 0 ? 1 : 0; }
+  std::uint64_t samples(QueryId query) override { return query.index % 2 == 0 ? 1 : 0; }
   void finish() override {}
   std::string description() const override { return "listening"; }
 

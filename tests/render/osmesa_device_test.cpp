@@ -369,6 +369,36 @@ TEST(OsMesaDevice, DrawsOnAfterAQuery) {
   EXPECT_EQ(device.read_ids(), ids);
 }
 
+TEST(OsMesaDevice, TellsAQueryOfAnEarlierFrameFromThoseOfThisOne) {
+  const Scene scene = wall_and_cubes();
+  const SceneState state(scene);
+  OsMesaDevice device;
+  device.load(scene);
+  const std::array<Aabb, 1> box = {state.view().bounds[1]};
+  device.begin_frame(frame_of(state, {64, 64}));
+  const QueryId earlier = device.query(box);
+  device.begin_frame(frame_of(state, {64, 64}));
+  const QueryId now = device.query(box);
+  EXPECT_EQ(earlier.index, now.index) << "the place is used again, or nothing is tested here";
+  EXPECT_THROW(device.samples(earlier), std::logic_error);
+  EXPECT_THROW(device.ready(earlier), std::logic_error);
+  EXPECT_GT(device.samples(now), 0U);
+}
+
+TEST(OsMesaDevice, CountsEachPixelOfABoxOnce) {
+  const Scene scene = wall_and_cubes();
+  const SceneState state(scene);
+  OsMesaDevice device;
+  device.load(scene);
+  device.begin_frame(frame_of(state, {64, 64}));
+  // Nothing is drawn, so back faces would pass as well.
+  const std::array<Aabb, 1> box = {state.view().bounds[1]};
+  const std::uint64_t samples = device.samples(device.query(box));
+  device.begin_frame(frame_of(state, {64, 64}));
+  device.draw(std::array<ObjectId, 1>{1});
+  EXPECT_EQ(samples, count_of(device.read_ids(), 1));
+}
+
 TEST(OsMesaDevice, RefusesCallsInAWrongOrder) {
   const Scene scene = wall_and_cubes();
   const SceneState state(scene);
@@ -377,7 +407,7 @@ TEST(OsMesaDevice, RefusesCallsInAWrongOrder) {
   device.load(scene);
   EXPECT_THROW(device.draw(state.view().shown), std::logic_error);
   device.begin_frame(frame_of(state, {8, 8}));
-  EXPECT_THROW(device.samples(0), std::logic_error);
+  EXPECT_THROW(device.samples({}), std::logic_error);
 }
 
 TEST(OsMesaDevice, TwoDevicesInOneThreadDoNotDisturbEachOther) {
