@@ -1,17 +1,16 @@
 // Many small boxes in place of a big one, so that what is hidden is found hidden more often.
 //
-// Idea: the box of a long, bent or slanting thing shows where the thing does not. Each mesh's
-//   triangles are divided in two, again and again, where the two boxes have the least surface; the
-//   part whose division takes away most surface goes first. What is asked about is the union of the
-//   parts' boxes, as long as their surfaces together are at most sigma times the surface of the one
-//   box: the surface is what a query costs to draw. Nodes of a hierarchy are divided the same way,
-//   into their children, their objects and the objects' parts.
-// Guarantee: conservative: every triangle lies wholly in one of the boxes, in exact arithmetic.
-//   Boxes of turned objects grow, as boxes of boxes do; they are cut to the object's own box, and
-//   if they are then too large for the rule, the one box stands for them. The rule holds for what
-//   is given out, always.
-// Cost: build O(t log t) a mesh of t triangles; a node or object costs about 0.1 us a box. Boxes of
-//   things that do not move may be kept by the caller.
+// Idea: the box of a long, bent or slanting thing shows where the thing does not. What is asked
+//   about is the union of the boxes of parts, as long as their surfaces together are at most sigma
+//   times the surface of the one box: the surface is what a query costs to draw. The part with the
+//   largest surface is divided first. A mesh is divided by cuts (mesh_parts.h), a node of a
+//   hierarchy into its children, its objects, and their meshes' parts. Of all divisions on the way
+//   the one with the least room in its boxes is taken, where each box more has to take 2 % away.
+// Guarantee: conservative: every point of every triangle lies in one of the boxes, in exact
+//   arithmetic. Boxes of turned objects grow, as boxes of boxes do; they are cut to the object's
+//   own box, and the rule holds for what is given out, always.
+// Cost: build O(t) for each of some dozen cuts of a mesh of t triangles; an object or node costs
+//   1 to 3 us. Boxes of what does not move may be kept by the caller.
 // Limits: boxes lie along the axes of the world; a plane at 45 degrees gains only by many boxes. A
 //   pixel that several of the boxes cover counts for each: thresholds above 0 pixels mean less.
 // Sources: Zachmann, Computer-Graphik 2, SS 2012, slides 69-70 (sigma = 1.4); Mattausch, Bittner,
@@ -22,6 +21,7 @@
 #include <span>
 #include <vector>
 
+#include "algorithms/occlusion/mesh_parts.h"
 #include "common/scene/frame.h"
 #include "common/spatial/spatial_structure.h"
 
@@ -50,16 +50,11 @@ class TightBounds {
   std::size_t bytes() const;
 
  private:
-  /// A part of a mesh: its box in the mesh's frame, and its two halves.
-  struct Part {
-    Aabb box;
-    std::uint32_t first_half = 0;  // in parts_; the other one follows it; 0: not divided
-  };
-  struct Piece;
+  class Divider;
 
   const Scene* scene_ = nullptr;
   Limits limits_;
-  std::vector<Part> parts_;                // [0] is unused
+  std::vector<MeshPart> parts_;            // [0] is unused
   std::vector<std::uint32_t> whole_mesh_;  // in parts_, by mesh
 };
 
