@@ -16,6 +16,8 @@
 //   enough. Scanning ends as soon as no longer prefix can be better.
 // Limits: greedy: the groups together need not be the best of all ways to divide the candidates;
 //   the chances are taken as independent, which neighbours are not.
+//   By the paper's model the value of a hopeless group grows to 1 with its size: what is likely
+//   visible is asked about together, where the slides' model asks about it alone.
 // Sources: Zachmann, Computer-Graphik 2, SS 2012, slides 64-68 (slides); Mattausch, Bittner, Wimmer
 //   2008, CHC++, section 4 (paper), as the engine guacamole has it too.
 #pragma once
