@@ -8,6 +8,7 @@
 #include <bit>
 #include <utility>
 
+#include "common/raster/covered_area.h"
 #include "common/raster/setup_kernel.h"
 #include "common/raster/tile_kernel.h"
 
@@ -85,7 +86,7 @@ void DepthRaster::begin(const Camera& camera) {
   tiles_.clear(static_cast<float>(window_.nearness(camera.lens.far_m)));
 }
 
-std::size_t DepthRaster::draw(std::span<const RasterDraw> draws) {
+void DepthRaster::collect_clusters(std::span<const RasterDraw> draws) {
   std::vector<ClusterDraw>& clusters = work_->clusters;
   clusters.clear();
   find_clusters(ClusterPlanes(window_), draws, clusters);
@@ -94,23 +95,58 @@ std::size_t DepthRaster::draw(std::span<const RasterDraw> draws) {
     const auto near_m = static_cast<float>(std::max(window_.camera().lens.near_m, 1e-3));
     sort_near_first(near_m, clusters, work_->sorted);
   }
+}
+
+std::size_t DepthRaster::draw(std::span<const RasterDraw> draws) {
+  collect_clusters(draws);
+  const std::vector<ClusterDraw>& clusters = work_->clusters;
   if (options_.threads > 1 && clusters.size() > clusters_at_once) return draw_parallel(draws);
   SetupScratch& scratch = work_->parts.front();
   scratch.drawn = 0;
   Rows rows(window_);
-  const auto flush = [&] {
-    finish_blocks(scratch);
-    draw_blocks({scratch.blocks.data(), scratch.block_count}, tiles_, {});
-    scratch.block_count = 0;
-  };
   for (const ClusterDraw& cluster : clusters) {
     const WindowRows& r = rows.of(*cluster.draw);
     transform_cluster(window_, r, cluster, scratch, options_.setup.coverage, nullptr);
     set_up_cluster(window_, options_.setup, options_.ids, r, cluster, scratch);
-    if (scratch.block_count > blocks_at_once) flush();
+    if (scratch.block_count > blocks_at_once) draw_set_up();
   }
-  flush();
+  draw_set_up();
   return scratch.drawn;
+}
+
+void DepthRaster::draw_counted(std::span<const RasterDraw> draws,
+                               std::span<std::uint64_t> samples) {
+  std::ranges::fill(samples, 0);
+  collect_clusters(draws);
+  SetupScratch& scratch = work_->parts.front();
+  Rows rows(window_);
+  const auto next_lane = [&] {
+    return TriangleBlock::lanes * (scratch.block_count - (scratch.lane > 0 ? 1 : 0)) + scratch.lane;
+  };
+  for (const ClusterDraw& cluster : work_->clusters) {
+    const WindowRows& r = rows.of(*cluster.draw);
+    transform_cluster(window_, r, cluster, scratch, options_.setup.coverage, nullptr);
+    const std::size_t first = next_lane();
+    set_up_cluster(window_, options_.setup, options_.ids, r, cluster, scratch);
+    std::int64_t area = 0;
+    for (std::size_t lane = first; lane < next_lane(); ++lane) {
+      area += covered_area(scratch.blocks[lane / TriangleBlock::lanes], lane % TriangleBlock::lanes,
+                           viewport());
+    }
+    // Areas until all clusters of a draw, which need not follow each other, are drawn.
+    samples[static_cast<std::size_t>(cluster.draw - draws.data())] +=
+        static_cast<std::uint64_t>(area);
+    if (scratch.block_count > blocks_at_once) draw_set_up();
+  }
+  draw_set_up();
+  for (std::uint64_t& count : samples) count = samples_of_area(static_cast<std::int64_t>(count));
+}
+
+void DepthRaster::draw_set_up() {
+  SetupScratch& scratch = work_->parts.front();
+  finish_blocks(scratch);
+  draw_blocks({scratch.blocks.data(), scratch.block_count}, tiles_, {});
+  scratch.block_count = 0;
 }
 
 std::size_t DepthRaster::draw_parallel(std::span<const RasterDraw>) {
@@ -173,9 +209,7 @@ std::size_t DepthRaster::draw_visible(std::span<const RasterDraw> draws,
 void DepthRaster::draw_cluster(const ClusterDraw& cluster, const WindowRows& rows) {
   SetupScratch& scratch = work_->parts.front();
   set_up_cluster(window_, options_.setup, options_.ids, rows, cluster, scratch);
-  finish_blocks(scratch);
-  draw_blocks({scratch.blocks.data(), scratch.block_count}, tiles_, {});
-  scratch.block_count = 0;
+  draw_set_up();
 }
 
 std::size_t DepthRaster::draw_visible(std::span<const RasterDraw> draws,

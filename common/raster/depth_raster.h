@@ -53,6 +53,9 @@ class DepthRaster {
   /// Draws in this order. Returns how many triangles were set up and not dropped before scan
   /// conversion. The spans need not outlive the call.
   std::size_t draw(std::span<const RasterDraw> draws);
+  /// The same with one thread; samples[i] becomes the number of samples of the image that draw i
+  /// covers, near enough or not (covered_area.h: by area). `samples` is as long as `draws`.
+  void draw_counted(std::span<const RasterDraw> draws, std::span<std::uint64_t> samples);
 
   /// Draws in this order what is not hidden by what was drawn before it, so nearest first is best.
   /// hidden[i] becomes 1 if the vertices of draw i surely cover nothing of the image that would be
@@ -85,6 +88,10 @@ class DepthRaster {
   struct Work;
 
   void draw_cluster(const ClusterDraw& cluster, const WindowRows& rows);
+  /// Into work_->clusters, sorted.
+  void collect_clusters(std::span<const RasterDraw> draws);
+  /// Draws the blocks that are set up in the first scratch.
+  void draw_set_up();
   std::size_t draw_parallel(std::span<const RasterDraw> draws);
 
   RasterOptions options_;

@@ -1,25 +1,11 @@
 #include "common/render/gl_scene.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
+#include "common/render/handedness.h"
+
 namespace vislab {
-namespace {
-
-/// The sign of the transform's determinant; 0 if rounding its entries and what it transforms to
-/// float may turn it.
-double handedness(const glm::dmat4x3& m) {
-  const glm::dvec3 forward(m[1].y * m[2].z, m[1].z * m[2].x, m[1].x * m[2].y);
-  const glm::dvec3 backward(m[1].z * m[2].y, m[1].x * m[2].z, m[1].y * m[2].x);
-  const double determinant = glm::dot(m[0], forward - backward);
-  const double size = glm::dot(glm::abs(m[0]), glm::abs(forward) + glm::abs(backward));
-  constexpr double rounding = 1e-5;
-  return std::abs(determinant) > rounding * size ? determinant : 0.0;
-}
-
-}  // namespace
-
 void StreamBuffer::upload(const GlFunctions& gl, GLuint name, const void* data, std::size_t bytes) {
   if (bytes > capacity_) {
     capacity_ = bytes + bytes / 2;

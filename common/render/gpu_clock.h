@@ -31,7 +31,7 @@ struct GpuInterval {
 };
 
 enum class GpuCommandKind {
-  draw,   // one call, of any number of objects
+  draw,   // one call, of any number of objects; or a part of it, if the pipeline was full within
   query,  // one query, of any number of boxes
   flush,  // commands handed over: asked for, or since pipeline_depth of them waited
   poll,   // asking whether answers are there, as often as `count` says, with nothing in between
@@ -50,7 +50,8 @@ struct GpuCommand {
   /// Of a query: its index in the frame. Of a poll or wait: that of the query it asked for last;
   /// none_query for a wait until everything is drawn.
   std::uint32_t query = none_query;
-  bool changes_state = false;  // draws where the command before asked, or the other way
+  bool changes_state =
+      false;  // draws where the command before asked, or the other way; a frame begins drawing
   GpuInterval host;
   /// From the beginning of its first work to the end of its last; of draws, queries and flushes
   /// only, and only once it was handed over.
@@ -92,22 +93,22 @@ class GpuClock {
   const std::vector<GpuCommand>& log() const { return log_; }
 
  private:
-  enum class State { none, drawing, asking };
+  enum class State { drawing, asking };
   struct Pending {
     std::size_t command = 0;  // of the log
     double device_us = 0.0;   // what it takes
     std::uint32_t query = GpuCommand::none_query;
   };
 
-  GpuCommand& begin(GpuCommandKind kind, State state);
-  void gather(const Pending& pending);
+  std::size_t begin(GpuCommandKind kind, State state, double& device_us);
+  bool gather(const Pending& pending);
   void hand_over();
   void stand_still_until(double time_us, std::uint32_t query);
 
   GpuModel model_;
   double host_us_ = 0.0;
   double device_us_ = 0.0;
-  State state_ = State::none;
+  State state_ = State::drawing;
   std::vector<GpuCommand> log_;
   std::vector<Pending> gathered_;
   std::vector<double> queries_;  // when the device is done with each; infinite before hand-over
