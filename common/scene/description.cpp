@@ -257,6 +257,8 @@ CityParameters read_city(const Settings& table) {
   city.bridges =
       static_cast<std::uint32_t>(table.whole("bridges", 0, (city.blocks_z + 1) / 2, city.bridges));
   city.bridge_clearance = table.number("bridge_clearance", 0.0, 10.0, city.bridge_clearance);
+  city.min_triangles =
+      static_cast<std::uint32_t>(table.whole("min_triangles", 12, 1'000'000, city.min_triangles));
   city.seed = seed_of(table);
   return city;
 }

@@ -44,11 +44,12 @@ LoadedScene load_scene(const std::string& name_or_file, const DataFolders& folde
 /// in as much time, only seen less often. Throws InputError.
 ///
 /// Keys of every description: `kind` and those of the way (tracks.h), `description`, `frames` (60),
-/// `relative` (points count from the middle of the scene's box in radii of its circumscribed
-/// sphere), those of the lens (lens_fit.h), `off_axis_deg` (the camera looks so far to the right of
-/// where the way looks), `roll_deg` (about the view, the camera's up goes to its left),
-/// `eye_offset_m` (to the camera's right, as the eyes of a headset), and the table `motion`
-/// (motion_settings.h).
+/// `part` (the way's beginning only, as a share of its time, in as many frames: the smaller, the
+/// slower the camera; not of recorded ways), `relative` (points count from the middle of the
+/// scene's box in radii of its circumscribed sphere), those of the lens (lens_fit.h),
+/// `off_axis_deg` (the camera looks so far to the right of where the way looks), `roll_deg` (about
+/// the view, the camera's up goes to its left), `eye_offset_m` (to the camera's right, as the eyes
+/// of a headset), and the table `motion` (motion_settings.h).
 Path load_path(const std::string& name_or_file, const Scene& scene, const Viewport& viewport,
                int frames, const DataFolders& folders);
 

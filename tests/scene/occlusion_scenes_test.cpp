@@ -32,11 +32,12 @@ Aabb box_of(const Scene& scene, ObjectId id) {
 
 TEST(OcclusionScenes, AreWhatTheirDescriptionsSay) {
   const std::pair<const char*, std::size_t> expected[] = {
-      {"slit_wall", 606},       {"lattice_wall", 1201}, {"layered_tiles", 1320},
-      {"moving_wall", 2001},    {"open_field", 4900},   {"plant", 4533},
-      {"plant_tiny", 224},      {"crossing_quads", 6},  {"cyclic_bars", 3},
-      {"tilted_polygons", 100}, {"coplanar_pair", 16},  {"scanline_fence", 100},
-      {"touching_spans", 16},   {"city_bridge", 4409}};
+      {"slit_wall", 606},       {"lattice_wall", 1201},   {"layered_tiles", 1320},
+      {"moving_wall", 2001},    {"open_field", 4900},     {"plant", 4533},
+      {"plant_tiny", 224},      {"crossing_quads", 6},    {"cyclic_bars", 3},
+      {"tilted_polygons", 100}, {"coplanar_pair", 16},    {"scanline_fence", 100},
+      {"touching_spans", 16},   {"city_bridge", 4409},    {"city_heavy", 288},
+      {"plant_heavy", 321},     {"open_field_heavy", 144}};
   for (const auto& [name, objects] : expected) {
     const LoadedScene loaded = load_scene(name, repository_data());
     EXPECT_EQ(loaded.scene.object_count(), objects) << name;
@@ -84,6 +85,45 @@ TEST(CityOfBenchmarks, MoreThatIsHiddenLeavesTheRestAndLiesWithinBuildings) {
     }
     EXPECT_TRUE(inside) << id;
   }
+}
+
+TEST(HeavyScenes, HaveAtLeastFiveThousandTrianglesInEveryObjectAndAreClosed) {
+  for (const char* name : {"city_heavy", "plant_heavy", "open_field_heavy"}) {
+    const Scene scene = load_scene(name, repository_data()).scene;
+    for (ObjectId id = 0; id < scene.object_count(); ++id) {
+      EXPECT_GE(scene.triangle_count(id), 5000U) << name;
+    }
+    for (const Mesh& mesh : scene.meshes) EXPECT_TRUE(mesh.solid) << name << ", " << mesh.name;
+  }
+}
+
+TEST(HeavyScenes, StandWhereTheLightOnesStand) {
+  CityParameters city;
+  city.blocks_x = city.blocks_z = 4;
+  city.street_boxes = 20;
+  city.bridges = 1;
+  const Scene light = finished(make_city(city));
+  city.min_triangles = 1000;
+  const Scene heavy = finished(make_city(city));
+  ASSERT_EQ(heavy.object_count(), light.object_count());
+  for (ObjectId id = 0; id < light.object_count(); ++id) {
+    EXPECT_EQ(heavy.objects[id].transform, light.objects[id].transform);
+    EXPECT_EQ(heavy.triangle_count(id) >= 1000, id < 16) << id;
+  }
+  PlantParameters plant;
+  plant.bays_x = plant.bays_z = 2;
+  const Scene whole = finished(make_plant(plant));
+  plant.min_triangles = 500;
+  plant.small_parts = false;
+  const Scene coarse = finished(make_plant(plant));
+  EXPECT_LT(coarse.object_count(), whole.object_count() / 2);
+  std::size_t found = 0;  // all of it, in the same order
+  for (const Object& object : whole.objects) {
+    if (found < coarse.objects.size() && object.transform == coarse.objects[found].transform) {
+      ++found;
+    }
+  }
+  EXPECT_EQ(found, coarse.objects.size());
 }
 
 TEST(CityOfBenchmarks, BridgesLieOverMiddleStreetsAtTheirClearance) {

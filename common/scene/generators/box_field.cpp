@@ -86,6 +86,12 @@ Mesh box_mesh(const glm::dvec3& half_size, std::uint32_t subdivisions, double de
   return mesh;
 }
 
+Mesh dense_cube_mesh(std::uint32_t min_triangles) {
+  std::uint32_t subdivisions = 1;
+  while (12 * subdivisions * subdivisions < min_triangles) ++subdivisions;
+  return box_mesh(glm::dvec3(1.0), subdivisions, 1.0);
+}
+
 /// The instances' mirrors and shears, from a sequence of their own: their places do not depend on
 /// it.
 class Distortion {

@@ -43,7 +43,7 @@ void add_building(Scene& scene, double x, double z, double roof_share, Random& r
       {mesh, box_transform({x, 0.5 * height, z}, {half.x, 0.5 * height, half.y}), none_id});
 }
 
-void add_street_box(Scene& scene, const CityParameters& city, Random& random) {
+void add_street_box(Scene& scene, MeshId mesh, const CityParameters& city, Random& random) {
   while (true) {
     glm::dvec3 half;
     for (int axis = 0; axis < 3; ++axis) half[axis] = random.uniform(0.3, 2.0);
@@ -61,13 +61,13 @@ void add_street_box(Scene& scene, const CityParameters& city, Random& random) {
     const double z = along_z ? along : middle + aside;
     if (!clear_of_streets(x, half.x, city.blocks_x)) continue;
     if (!clear_of_streets(z, half.z, city.blocks_z)) continue;
-    scene.objects.push_back({0, box_transform({x, height, z}, half), none_id});
+    scene.objects.push_back({mesh, box_transform({x, height, z}, half), none_id});
     return;
   }
 }
 
 /// Where it does not come through the walls of one of the buildings, which are the first objects.
-void add_indoor_box(Scene& scene, std::uint32_t buildings, Random& random) {
+void add_indoor_box(Scene& scene, MeshId mesh, std::uint32_t buildings, Random& random) {
   constexpr double wall_m = 0.1;
   glm::dvec3 half;
   for (int axis = 0; axis < 3; ++axis) half[axis] = random.uniform(0.3, 2.0);
@@ -80,10 +80,10 @@ void add_indoor_box(Scene& scene, std::uint32_t buildings, Random& random) {
     half[axis] = std::min(half[axis], room[axis] - 2.0 * wall_m);
     center[axis] += random.uniform(-1.0, 1.0) * std::max(reach, 0.0);
   }
-  scene.objects.push_back({0, box_transform(center, half), none_id});
+  scene.objects.push_back({mesh, box_transform(center, half), none_id});
 }
 
-void add_bridge(Scene& scene, const CityParameters& city, std::uint32_t number) {
+void add_bridge(Scene& scene, MeshId mesh, const CityParameters& city, std::uint32_t number) {
   constexpr double building_height_m = 20.0;
   constexpr glm::dvec3 half_deck(0.0, 0.75, 2.4);
   const double first = std::floor(0.5 * city.blocks_z) - (city.bridges - 1.0);
@@ -91,15 +91,22 @@ void add_bridge(Scene& scene, const CityParameters& city, std::uint32_t number) 
   const glm::dvec3 center(0.0, city.bridge_clearance * building_height_m + half_deck.y,
                           street * pitch_m);
   const glm::dvec3 half(0.5 * city.blocks_x * pitch_m, half_deck.y, half_deck.z);
-  scene.objects.push_back({0, box_transform(center, half), none_id});
+  scene.objects.push_back({mesh, box_transform(center, half), none_id});
 }
 
 }  // namespace
 
 Scene make_city(const CityParameters& parameters) {
   Scene scene;
-  scene.meshes.push_back(cube_mesh());
+  const bool facades = parameters.min_triangles > 12;
+  scene.meshes.push_back(facades ? facade_mesh(parameters.min_triangles) : cube_mesh());
   if (parameters.roof_share > 0.0) scene.meshes.push_back(gable_mesh());
+  // Boxes and bridges stay light.
+  MeshId box = 0;
+  if (facades && parameters.street_boxes + parameters.indoor_boxes + parameters.bridges > 0) {
+    box = static_cast<MeshId>(scene.meshes.size());
+    scene.meshes.push_back(cube_mesh());
+  }
   Random random(parameters.seed);
   for (std::uint32_t j = 0; j < parameters.blocks_z; ++j) {
     for (std::uint32_t i = 0; i < parameters.blocks_x; ++i) {
@@ -108,13 +115,13 @@ Scene make_city(const CityParameters& parameters) {
     }
   }
   for (std::uint32_t i = 0; i < parameters.street_boxes; ++i) {
-    add_street_box(scene, parameters, random);
+    add_street_box(scene, box, parameters, random);
   }
   const std::uint32_t buildings = parameters.blocks_x * parameters.blocks_z;
   for (std::uint32_t i = 0; i < parameters.indoor_boxes; ++i) {
-    add_indoor_box(scene, buildings, random);
+    add_indoor_box(scene, box, buildings, random);
   }
-  for (std::uint32_t i = 0; i < parameters.bridges; ++i) add_bridge(scene, parameters, i);
+  for (std::uint32_t i = 0; i < parameters.bridges; ++i) add_bridge(scene, box, parameters, i);
   return scene;
 }
 

@@ -11,6 +11,14 @@ namespace vislab {
 /// A closed cube from -1 to 1 on each axis, 12 triangles.
 Mesh cube_mesh();
 
+/// The same cube, its sides cut into squares: at least so many triangles, 12 n^2. Closed.
+Mesh dense_cube_mesh(std::uint32_t min_triangles);
+
+/// A building in the cube from -1 to 1: a flat roof, and n by n windows in each of four walls, sunk
+/// into it by 0.04. Closed, free of self-intersection; at least so many triangles, 64 n^2 + 48 n +
+/// 16.
+Mesh facade_mesh(std::uint32_t min_triangles);
+
 /// Places cube_mesh() as the axis-aligned box around `center`.
 glm::dmat4x3 box_transform(const glm::dvec3& center, const glm::dvec3& half_size);
 
@@ -62,6 +70,8 @@ struct CityParameters {
   std::uint32_t indoor_boxes = 0;              // as large, inside the buildings: nobody sees them
   std::uint32_t bridges = 0;                   // over the middle streets that run along x
   double bridge_clearance = 0.5;               // below a deck, in building heights of 20 m
+  // Of a building with a flat roof: above 12 its walls have windows (facade_mesh).
+  std::uint32_t min_triangles = 12;
   std::uint64_t seed = 1;
 };
 

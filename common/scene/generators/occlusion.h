@@ -66,8 +66,9 @@ Scene make_moving_wall(const MovingWallParameters& parameters);
 
 struct OpenFieldParameters {
   std::uint32_t count = 10'000;
-  double spacing_m = 3.0;    // at least 8 half sizes, of which 4 are then always free
-  double half_size_m = 0.3;  // of the largest; the smallest have 0.7 of it
+  double spacing_m = 3.0;            // at least 8 half sizes, of which 4 are then always free
+  double half_size_m = 0.3;          // of the largest; the smallest have 0.7 of it
+  std::uint32_t min_triangles = 12;  // of a box
   std::uint64_t seed = 1;
 };
 
@@ -80,6 +81,9 @@ struct PlantParameters {
   double occlusion = 0.7;  // 0: bare frames and pipes; 1: all machines boxed, all bays walled
   std::uint32_t bays_x = 24, bays_z = 12;
   std::uint32_t segments = 8;  // round a pipe; a coil has about 24 segments^2 triangles
+  std::uint32_t min_triangles =
+      12;                   // of every mesh: boxes and pipes are cut into more, coils rounder
+  bool small_parts = true;  // frames, parts and barrels; without them stands the same, only less
   std::uint64_t seed = 1;
 };
 
@@ -90,8 +94,9 @@ struct PlantParameters {
 /// and more is in front of it. Aisles are free from the ground up, and so are 4 m round the hall.
 Scene make_plant(const PlantParameters& parameters);
 
-/// A prism along y from -1 to 1 of radius 1, closed: 4 segments - 4 triangles.
-Mesh pipe_mesh(std::uint32_t segments);
+/// A prism along y from -1 to 1 of radius 1, cut across into `pieces`; closed. 2 segments pieces +
+/// 2 (segments - 2) triangles.
+Mesh pipe_mesh(std::uint32_t segments, std::uint32_t pieces = 1);
 
 /// A pipe of radius `pipe_radius_m` wound `turns` times round the y axis at radius 1, rising from y
 /// = -1 to 1, with `segments` edges round the pipe and 4 segments steps in each turn, closed by

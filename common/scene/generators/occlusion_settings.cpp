@@ -12,6 +12,7 @@ namespace vislab {
 namespace {
 
 constexpr double longest_m = 1e5;
+constexpr std::int64_t most_triangles = 1'000'000;  // of one mesh
 
 std::uint32_t whole(const Settings& table, const std::string& key, std::int64_t low,
                     std::int64_t high, std::uint32_t fallback) {
@@ -90,6 +91,7 @@ SceneMaker open_field(const Settings& table) {
   field.count = whole(table, "count", 1, 10'000'000, field.count);
   field.half_size_m = length(table, "half_size_m", 1e-3, field.half_size_m);
   field.spacing_m = length(table, "spacing_m", 8.0 * field.half_size_m, 10.0 * field.half_size_m);
+  field.min_triangles = whole(table, "min_triangles", 12, most_triangles, field.min_triangles);
   field.seed = seed_of(table);
   return [field] { return make_open_field(field); };
 }
@@ -100,6 +102,8 @@ SceneMaker plant(const Settings& table) {
   plant.bays_x = whole(table, "bays_x", 1, 1000, plant.bays_x);
   plant.bays_z = whole(table, "bays_z", 1, 1000, plant.bays_z);
   plant.segments = whole(table, "segments", 3, 200, plant.segments);
+  plant.min_triangles = whole(table, "min_triangles", 12, most_triangles, plant.min_triangles);
+  plant.small_parts = table.flag("small_parts", plant.small_parts);
   plant.seed = seed_of(table);
   return [plant] { return make_plant(plant); };
 }

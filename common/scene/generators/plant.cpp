@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -37,10 +38,11 @@ void add_rings(Mesh& mesh, std::uint32_t segments) {
 
 }  // namespace
 
-Mesh pipe_mesh(std::uint32_t segments) {
+Mesh pipe_mesh(std::uint32_t segments, std::uint32_t pieces) {
   Mesh mesh;
   mesh.name = "pipe";
-  for (const double y : {-1.0, 1.0}) {
+  for (std::uint32_t ring = 0; ring <= pieces; ++ring) {
+    const double y = 2.0 * ring / pieces - 1.0;
     for (std::uint32_t i = 0; i < segments; ++i) {
       const double angle = tau * i / segments;
       mesh.positions.emplace_back(std::cos(angle), y, std::sin(angle));
@@ -128,6 +130,7 @@ class Plant {
     constexpr double radius = 0.06;
     const glm::dvec3 frame = half - 0.1;
     for (const double x : {-1.0, 1.0}) {
+      if (!parameters_.small_parts) break;
       for (const double z : {-1.0, 1.0}) {
         add_pipe(place + glm::dvec3(x * frame.x, 0.0, z * frame.z), 1, frame.y, radius);
       }
@@ -143,7 +146,7 @@ class Plant {
       glm::dvec3 aside;
       for (int axis = 0; axis < 3; ++axis) part[axis] = random.uniform(0.05, 0.25);
       for (int axis = 0; axis < 3; ++axis) aside[axis] = random.uniform(-1.0, 1.0);
-      add_box(place + aside * (half - part - 0.05), part);
+      if (parameters_.small_parts) add_box(place + aside * (half - part - 0.05), part);
     }
   }
 
@@ -162,6 +165,7 @@ class Plant {
       const glm::dvec3 at =
           corner + glm::dvec3(random.uniform(-0.4, 0.4), 0.0, random.uniform(-0.4, 0.4));
       const double size = random.uniform(0.15, 0.4);
+      if (!parameters_.small_parts) continue;
       if (i % 3 == 0) {
         add_box(at + glm::dvec3(0.0, size, 0.0), glm::dvec3(size));
       } else {
@@ -198,8 +202,15 @@ Scene make_plant(const PlantParameters& parameters) {
   constexpr double coil_turns = 3.0;
   constexpr double coil_pipe = 0.15;
   Scene scene;
-  scene.meshes = {cube_mesh(), pipe_mesh(parameters.segments),
-                  coil_mesh(parameters.segments, coil_turns, coil_pipe)};
+  // The least numbers with which all meshes have as many triangles as they should.
+  const std::uint32_t pipe_pieces =
+      std::max(1U, (parameters.min_triangles + 3) / (2 * parameters.segments));
+  auto coil_segments = static_cast<std::uint32_t>(
+      std::ceil(std::sqrt(parameters.min_triangles / (8.0 * coil_turns))));
+  coil_segments = std::max(coil_segments, parameters.segments);
+  scene.meshes = {dense_cube_mesh(parameters.min_triangles),
+                  pipe_mesh(parameters.segments, pipe_pieces),
+                  coil_mesh(coil_segments, coil_turns, coil_pipe)};
   Plant plant(parameters, scene);
   Random random(parameters.seed);
   for (std::uint32_t j = 0; j < parameters.bays_z; ++j) {

@@ -156,7 +156,7 @@ Scene make_moving_wall(const MovingWallParameters& parameters) {
 
 Scene make_open_field(const OpenFieldParameters& parameters) {
   Scene scene;
-  scene.meshes.push_back(cube_mesh());
+  scene.meshes.push_back(dense_cube_mesh(parameters.min_triangles));
   const auto columns = static_cast<std::uint32_t>(std::ceil(std::sqrt(parameters.count)));
   const std::uint32_t rows = (parameters.count + columns - 1) / columns;
   Random random(parameters.seed);

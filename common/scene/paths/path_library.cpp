@@ -149,6 +149,8 @@ Plan read_plan(const std::filesystem::path& file, const Scene& scene, int frames
   } else {
     plan.frames = frames_of(settings, frames, plan.frames);
     plan.track = read_track(settings, points, scene, kind, plan.frames);
+    const double share = settings.number("part", 1e-6, 1.0, 1.0);
+    if (share < 1.0) plan.track = beginning_track(plan.track, share);
   }
   if (settings.has("motion")) plan.motion = read_motion(settings.table("motion"), points, scene);
   settings.done();

@@ -120,6 +120,10 @@ Track stop_and_go_track(const Track& way, int stops) {
   return {pose, false};
 }
 
+Track beginning_track(const Track& way, double share) {
+  return {[=](double u) { return way.pose(u * share); }, false};
+}
+
 Track cut_track(const std::vector<glm::dvec3>& eyes, const std::vector<glm::dvec3>& targets) {
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < eyes.size(); ++i) poses.push_back(look_at(eyes[i], targets[i]));

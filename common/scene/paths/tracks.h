@@ -56,6 +56,9 @@ Track gazing_track(const std::vector<glm::dvec3>& points, const glm::dvec3& targ
 /// time.
 Track stop_and_go_track(const Track& way, int stops);
 
+/// The beginning of another way, as far as `share` of its time, taken in all of the time: as slow.
+Track beginning_track(const Track& way, double share);
+
 /// From eye to eye without a way between, each looking at its target; equally long everywhere. As
 /// many targets as eyes, each different from its eye.
 Track cut_track(const std::vector<glm::dvec3>& eyes, const std::vector<glm::dvec3>& targets);
