@@ -1,0 +1,441 @@
+// occlusion.chcpp: CHC++, coherent hierarchical culling with its queries collected, shared,
+// tightened and spread over frames.
+//
+// Idea: what was visible in the last frame is drawn at once, near first. Nodes that were hidden
+// wait
+//   in a queue and are asked about in one go when the walk has nothing else to do, or when `batch`
+//   of them wait: by then most of what hides them is drawn, and the device changes from drawing to
+//   asking once. Nodes hidden for long share queries (multiquery.h). What was visible is asked
+//   about again only every `interval` frames, at first after a random part of that, so that not all
+//   of it is asked about in one frame; these questions are put behind the others, so that the
+//   device has something to do while the walk waits (`lazy`). Boxes of units are unions of small
+//   ones (tight_bounds.h), since what is falsely visible is drawn, which costs most of all.
+// Guarantee: image_exact (threshold_px = 0): in every frame each object in the view is drawn, or
+//   lies in a box that was found without a sample behind what was drawn in this frame. Answers of
+//   earlier frames are guesses. A node that comes near the near plane is opened or drawn unasked.
+// Cost: O(visible nodes + hidden nodes beside them) a frame; queries: 1 ÷ interval of the visible
+//   units and some groups of hidden nodes. The frame waits for an answer about as often as hidden
+//   nodes become visible one below the other.
+// Limits: an object whose boxes show although it does not is drawn. In a frame after a cut nothing
+//   is known: many rounds of questions, near first. Answers are read in the order of asking and
+//   never polled, so that they do not depend on time.
+// Beyond the sources: a hidden node whose box showed though all below it was hidden is opened
+// unasked
+//   until its next test, where the paper asks about it in every frame; of a walk without any memory
+//   the first unit is drawn unasked, since nothing can hide it.
+// Sources: Mattausch, Bittner, Wimmer 2008, CHC++: Coherent Hierarchical Culling Revisited;
+// Zachmann,
+//   Computer-Graphik 2, SS 2012, slides 64-75.
+
+#include <algorithm>
+
+#include "algorithms/occlusion/multiquery.h"
+#include "algorithms/occlusion/node_boxes.h"
+#include "algorithms/occlusion/node_memory.h"
+#include "algorithms/occlusion/node_walk.h"
+#include "common/culler/registry.h"
+#include "common/geometry/random.h"
+#include "common/scene/error.h"
+
+namespace vislab {
+namespace {
+
+using occlusion_culling::group_multiqueries;
+using occlusion_culling::MultiqueryCandidate;
+using occlusion_culling::MultiqueryCost;
+using occlusion_culling::MultiqueryModel;
+using occlusion_culling::NodeBoxes;
+using occlusion_culling::NodeMemory;
+using occlusion_culling::NodeWalk;
+using occlusion_culling::Persistence;
+using occlusion_culling::TightBounds;
+
+CullerInfo describe() {
+  constexpr auto build = ParameterSpec::Stage::build;
+  constexpr auto query = ParameterSpec::Stage::query;
+  CullerInfo info;
+  info.name = "occlusion.chcpp";
+  info.family = "occlusion";
+  info.summary =
+      "Draws what was visible, asks about hidden nodes of a hierarchy in batches that share "
+      "queries, "
+      "and now and then about what is visible.";
+  info.guarantee = Guarantee::image_exact;
+  info.repeatability = Repeatability::path;
+  info.granularity = Granularity::object;
+  info.culls = Culls::hidden;
+  info.space = Space::image;
+  info.stage = PipelineStage::raster;
+  info.needs_device = true;
+  info.parameters = {
+      ParameterSpec::integer("leaf_triangles", 1000, 1, 100'000'000, "triangles", build,
+                             "nodes with so many triangles, a draw counting as 20, are asked about "
+                             "and drawn as a whole"),
+      ParameterSpec::integer("batch", 50, 1, 10'000, "nodes", query,
+                             "so many hidden nodes at most wait to be asked about in one go"),
+      ParameterSpec::boolean(
+          "lazy", true, query,
+          "visible units are asked about again behind the hidden nodes; without, "
+          "just before they are drawn, a change from drawing to asking each"),
+      ParameterSpec::integer("interval", 8, 1, 1000, "frames", query,
+                             "visible units are asked about again after so many frames"),
+      ParameterSpec::choice(
+          "retest", "random", {"random", "aligned"}, query,
+          "the first time after a random part of the interval, or after all of it, "
+          "so that what appeared together is asked about in one frame"),
+      ParameterSpec::boolean("multiqueries", true, query,
+                             "nodes that have been hidden for long share queries"),
+      ParameterSpec::choice("cost_model", "paper", {"paper", "slides"}, query,
+                            "by what multiqueries are grouped: expected queries, or triangles not "
+                            "drawn against boxes asked about"),
+      ParameterSpec::choice(
+          "persistence", "formula", {"formula", "measured"}, query,
+          "how likely hidden nodes stay hidden: 0.99 - 0.7 e^-t, or as counted on "
+          "the path so far"),
+      ParameterSpec::boolean("tight_bounds", true, build,
+                             "units are asked about by the boxes of their parts"),
+      ParameterSpec::real("sigma", 1.4, 1.0, 100.0, "", build,
+                          "the parts' boxes have at most so many times the surface of the one box"),
+      ParameterSpec::integer("max_boxes", 16, 1, 4096, "boxes", build,
+                             "a unit has at most so many boxes"),
+      ParameterSpec::integer(
+          "threshold_px", 0, 0, 1'000'000, "pixels", query,
+          "nodes whose boxes show no more pixels than this are left out; above 0 "
+          "small things vanish from the image")};
+  info.cost = "O(visible nodes + hidden nodes beside them), and a query for a part of these";
+  info.limits =
+      "What shows by its boxes but not by itself is drawn. After a cut it knows nothing and waits "
+      "for several rounds of answers. With threshold_px > 0 it is approximate.";
+  info.sources = {"Mattausch, Bittner, Wimmer 2008, CHC++: Coherent Hierarchical Culling Revisited",
+                  "Zachmann, Computer-Graphik 2, SS 2012, slides 64-75"};
+  return info;
+}
+
+class Chcpp : public ICuller {
+ public:
+  explicit Chcpp(const ParameterValues& values)
+      : info_(describe()),
+        walk_(static_cast<std::uint32_t>(values.integer("leaf_triangles"))),
+        batch_(static_cast<std::size_t>(values.integer("batch"))),
+        lazy_(values.boolean("lazy")),
+        interval_(static_cast<std::uint32_t>(values.integer("interval"))),
+        random_(values.choice("retest") == "random"),
+        multiqueries_(values.boolean("multiqueries")),
+        persistence_(values.choice("persistence") == "formula" ? Persistence::Kind::formula
+                                                               : Persistence::Kind::measured),
+        threshold_px_(static_cast<std::uint64_t>(values.integer("threshold_px"))) {
+    model_.cost =
+        values.choice("cost_model") == "paper" ? MultiqueryCost::paper : MultiqueryCost::slides;
+    if (values.boolean("tight_bounds")) {
+      tight_ = {values.real("sigma"), static_cast<std::uint32_t>(values.integer("max_boxes"))};
+    }
+    if (threshold_px_ > 0) info_.guarantee = Guarantee::approximate;
+  }
+
+  const CullerInfo& info() const override { return info_; }
+
+  void build(const Scene& scene, const BuildContext& context) override {
+    if (context.device == nullptr) {
+      throw InputError(
+          "occlusion.chcpp: there is no graphics device to ask; it needs a run that draws");
+    }
+    device_ = context.device;
+    walk_.build(scene);
+    boxes_of_.build(scene, tight_);
+    reset(0);
+  }
+
+  void reset(std::uint64_t seed) override {
+    walk_.reset();
+    memory_.reset(walk_.hierarchy().node_count());
+    persistence_.reset();
+    chance_ = Random(seed);
+  }
+
+  void update(const Frame& frame, const Changes& changes) override {
+    walk_.update(frame, changes);
+    memory_.forget(walk_.hierarchy().changed());
+  }
+
+  void cull(const Frame& frame, const Candidates& candidates, DrawSink& out) override {
+    frame_ = &frame;
+    memory_.start(frame, walk_.hierarchy());
+    // Without any memory nothing is known to be visible; what is nearest is.
+    blind_ = !memory_.was_visited(SpatialStructure::root);
+    walk_.start(frame, candidates);
+    for (Queue* queue : {&hidden_, &due_}) queue->clear();
+    boxes_.clear();
+    asked_.clear();
+    retests_.clear();
+
+    NodeWalk::Visit visit;
+    for (;;) {
+      while (walk_.next(visit)) {
+        decide(visit, out);
+        if (hidden_.size() < batch_) continue;
+        read_answers();
+        ask(out);
+      }
+      if (asked_.empty() && hidden_.empty()) break;
+      if (asked_.empty()) ask(out);
+      read_answers();
+    }
+    finish_retests(out);
+    walk_.hand_over(out);
+  }
+
+  std::size_t bytes() const override {
+    return walk_.bytes() + boxes_of_.bytes() + memory_.bytes() +
+           (hidden_.capacity() + due_.capacity()) * sizeof(Entry) +
+           (asked_.capacity() + retests_.capacity()) * sizeof(Asked) +
+           members_.capacity() * sizeof(Entry) +
+           (boxes_.capacity() + group_boxes_.capacity()) * sizeof(Aabb) +
+           candidates_.capacity() * sizeof(MultiqueryCandidate) +
+           ends_.capacity() * sizeof(std::uint32_t);
+  }
+
+  Counters counters() const override {
+    return {{"queries", queries_},
+            {"multiqueries", groups_},
+            {"requeries", requeries_},
+            {"retests", retests_asked_},
+            {"nodes_visited", walk_.nodes_visited()},
+            {"units_drawn", units_drawn_},
+            {"units_found_visible", units_found_visible_}};
+  }
+
+ private:
+  /// A node that waits for its question or answer; its boxes lie in boxes_.
+  struct Entry {
+    NodeWalk::Visit visit;
+    std::uint32_t first_box = 0, box_count = 0;
+    std::uint32_t hidden_frames = 0;
+    bool alone = false;  // its group showed
+  };
+  using Queue = std::vector<Entry>;
+  /// A query and what it is about: a run of members_.
+  struct Asked {
+    QueryId query;
+    std::uint32_t first = 0, count = 0;
+  };
+
+  void decide(const NodeWalk::Visit& visit, DrawSink& out) {
+    NodeMemory::Node& known = memory_[visit.node];
+    const bool unit = walk_.hierarchy().is_unit(visit.node);
+    if (!memory_.was_visited(visit.node)) known.hidden_since = 0;
+    if (memory_.was_visible(visit.node)) {
+      if (unit) {
+        draw_visible(visit, out);
+      } else {
+        walk_.open(visit);
+      }
+    } else if (!unit && memory_.was_visited(visit.node) && memory_.now() < known.test_at) {
+      // Its box shows, though what is below it was hidden.
+      walk_.open(visit);
+    } else if ((blind_ && walk_.kept_count() == 0) || !wait_hidden(visit)) {
+      take_as_visible(visit);
+    }
+    known.visited = memory_.now();
+  }
+
+  /// A unit that was visible is drawn; if its time has come it is asked about for the next frame.
+  void draw_visible(const NodeWalk::Visit& visit, DrawSink& out) {
+    NodeMemory::Node& known = memory_[visit.node];
+    Entry entry = {visit};
+    const bool due = known.test_at <= memory_.now() && find_boxes(entry);
+    if (due) {
+      known.test_at = memory_.now() + interval_;
+      due_.push_back(entry);
+      if (!lazy_) ask_due(out);
+    } else {
+      memory_.note_visible(walk_.hierarchy(), visit.node);
+    }
+    draw(visit);
+  }
+
+  /// What was not visible before is, or nothing can be found out about it.
+  void take_as_visible(const NodeWalk::Visit& visit) {
+    NodeMemory::Node& known = memory_[visit.node];
+    known.hidden_since = 0;
+    known.test_at = memory_.now() + first_interval();
+    if (!walk_.hierarchy().is_unit(visit.node)) {
+      walk_.open(visit);
+      return;
+    }
+    memory_.note_visible(walk_.hierarchy(), visit.node);
+    draw(visit);
+  }
+
+  std::uint32_t first_interval() {
+    return random_ ? 1 + static_cast<std::uint32_t>(chance_.below(interval_)) : interval_;
+  }
+
+  void draw(const NodeWalk::Visit& visit) {
+    ++units_drawn_;
+    walk_.draw(visit);
+  }
+
+  bool find_boxes(Entry& entry) {
+    entry.first_box = static_cast<std::uint32_t>(boxes_.size());
+    entry.box_count = boxes_of_.append(*frame_, walk_.hierarchy(), entry.visit.node, boxes_);
+    return entry.box_count > 0;
+  }
+
+  /// Puts a node into the queue of hidden ones. False if it cannot be asked about.
+  bool wait_hidden(const NodeWalk::Visit& visit) {
+    Entry entry = {visit};
+    if (!find_boxes(entry)) return false;
+    entry.hidden_frames = memory_.hidden_frames(visit.node);
+    hidden_.push_back(entry);
+    return true;
+  }
+
+  /// Asks about all hidden nodes that wait, behind everything kept so far, and about visible units
+  /// whose time has come behind these.
+  void ask(DrawSink& out) {
+    if (walk_.hand_over(out)) out.flush();
+    members_.clear();
+    group();
+    std::uint32_t first = 0;
+    for (const std::uint32_t end : ends_) {
+      group_boxes_.clear();
+      const auto start = static_cast<std::uint32_t>(members_.size());
+      for (std::uint32_t i = first; i < end; ++i) {
+        const Entry& entry = hidden_[candidates_[i].id];
+        group_boxes_.insert(group_boxes_.end(), boxes_.begin() + entry.first_box,
+                            boxes_.begin() + entry.first_box + entry.box_count);
+        members_.push_back(entry);
+      }
+      asked_.push_back({device_->query(group_boxes_), start, end - first});
+      ++queries_;
+      groups_ += end - first > 1 ? 1 : 0;
+      first = end;
+    }
+    hidden_.clear();
+    device_->flush();
+    if (!due_.empty()) ask_due(out);
+  }
+
+  /// Divides the queue of hidden nodes: group g is candidates_[ends_[g - 1] … ends_[g] - 1]. Those
+  /// whose group showed are asked about alone.
+  void group() {
+    candidates_.clear();
+    std::uint32_t alone = 0;
+    for (std::uint32_t i = 0; i < hidden_.size(); ++i) {
+      if (!multiqueries_ || hidden_[i].alone) {
+        candidates_.push_back({0, 0, 0, i});
+        ++alone;
+      }
+    }
+    for (std::uint32_t i = 0; i < hidden_.size() && multiqueries_; ++i) {
+      const Entry& entry = hidden_[i];
+      if (entry.alone) continue;
+      candidates_.push_back(
+          {entry.hidden_frames,
+           static_cast<std::uint32_t>(walk_.hierarchy().triangles(entry.visit.node)),
+           entry.box_count, i});
+    }
+    ends_.clear();
+    group_multiqueries(model_, persistence_, std::span(candidates_).subspan(alone), ends_);
+    for (std::uint32_t& end : ends_) end += alone;
+    for (std::uint32_t i = alone; i > 0; --i) ends_.insert(ends_.begin(), i);
+  }
+
+  /// Asks about visible units again. Their answers are read when all is drawn.
+  void ask_due(DrawSink& out) {
+    if (walk_.hand_over(out)) out.flush();
+    for (const Entry& entry : due_) {
+      const QueryId query =
+          device_->query(std::span(boxes_).subspan(entry.first_box, entry.box_count));
+      retests_.push_back({query, entry.visit.node, 1});
+      ++queries_;
+      ++retests_asked_;
+    }
+    due_.clear();
+    device_->flush();
+  }
+
+  /// Reads what was asked about hidden nodes: what is visible is drawn or opened.
+  void read_answers() {
+    for (const Asked& asked : asked_) {
+      const bool visible = device_->samples(asked.query) > threshold_px_;
+      for (std::uint32_t i = asked.first; i < asked.first + asked.count; ++i) {
+        Entry entry = members_[i];
+        if (visible && asked.count > 1) {
+          entry.alone = true;
+          hidden_.push_back(entry);
+          ++requeries_;
+          continue;
+        }
+        if (entry.hidden_frames > 0) persistence_.note(entry.hidden_frames, !visible);
+        if (visible) {
+          units_found_visible_ += walk_.hierarchy().is_unit(entry.visit.node) ? 1 : 0;
+          take_as_visible(entry.visit);
+        } else {
+          memory_.note_hidden(entry.visit.node);
+        }
+      }
+    }
+    asked_.clear();
+  }
+
+  /// Asks about the visible units that are left, and reads what became of all.
+  void finish_retests(DrawSink& out) {
+    if (!due_.empty()) ask_due(out);
+    for (const Asked& asked : retests_) {
+      if (device_->samples(asked.query) > threshold_px_) {
+        memory_.note_visible(walk_.hierarchy(), asked.first);
+      } else {
+        memory_.note_hidden(asked.first);
+      }
+    }
+  }
+
+  CullerInfo info_;
+  NodeWalk walk_;
+  NodeBoxes boxes_of_;
+  NodeMemory memory_;
+  std::size_t batch_;
+  bool lazy_;
+  std::uint32_t interval_;
+  bool random_;
+  bool multiqueries_;
+  MultiqueryModel model_;
+  Persistence persistence_;
+  std::optional<TightBounds::Limits> tight_;
+  std::uint64_t threshold_px_;
+  RenderDevice* device_ = nullptr;
+  Random chance_{0};
+
+  // Of a call of cull().
+  const Frame* frame_ = nullptr;
+  bool blind_ = false;
+  std::vector<Aabb> boxes_;
+  Queue hidden_;                // the I-queue
+  Queue due_;                   // the V-queue
+  std::vector<Asked> asked_;    // about hidden nodes
+  Queue members_;               // of asked_
+  std::vector<Asked> retests_;  // first is the node
+  std::vector<MultiqueryCandidate> candidates_;
+  std::vector<std::uint32_t> ends_;
+  std::vector<Aabb> group_boxes_;
+
+  std::uint64_t queries_ = 0;
+  std::uint64_t groups_ = 0;
+  std::uint64_t requeries_ = 0;
+  std::uint64_t retests_asked_ = 0;
+  std::uint64_t units_drawn_ = 0;
+  std::uint64_t units_found_visible_ = 0;
+};
+
+}  // namespace
+
+namespace cullers {
+
+CullerEntry occlusion_chcpp() {
+  return {describe(),
+          [](const ParameterValues& values) { return std::make_unique<Chcpp>(values); }};
+}
+
+}  // namespace cullers
+}  // namespace vislab
