@@ -32,12 +32,13 @@ Aabb box_of(const Scene& scene, ObjectId id) {
 
 TEST(OcclusionScenes, AreWhatTheirDescriptionsSay) {
   const std::pair<const char*, std::size_t> expected[] = {
-      {"slit_wall", 606},       {"lattice_wall", 1201},   {"layered_tiles", 1320},
-      {"moving_wall", 2001},    {"open_field", 4900},     {"plant", 4533},
-      {"plant_tiny", 224},      {"crossing_quads", 6},    {"cyclic_bars", 3},
-      {"tilted_polygons", 100}, {"coplanar_pair", 16},    {"scanline_fence", 100},
-      {"touching_spans", 16},   {"city_bridge", 4409},    {"city_heavy", 288},
-      {"plant_heavy", 321},     {"open_field_heavy", 144}};
+      {"slit_wall", 606},        {"lattice_wall", 1201},        {"layered_tiles", 1320},
+      {"moving_wall", 2001},     {"open_field", 4900},          {"plant", 4533},
+      {"plant_tiny", 224},       {"crossing_quads", 6},         {"cyclic_bars", 3},
+      {"tilted_polygons", 100},  {"coplanar_pair", 16},         {"scanline_fence", 100},
+      {"touching_spans", 16},    {"city_bridge", 4409},         {"city_heavy", 288},
+      {"plant_heavy", 321},      {"open_field_heavy", 144},     {"covered_bars", 128},
+      {"phase_hidden_30", 2440}, {"phase_hidden_75_heavy", 360}};
   for (const auto& [name, objects] : expected) {
     const LoadedScene loaded = load_scene(name, repository_data());
     EXPECT_EQ(loaded.scene.object_count(), objects) << name;
@@ -124,6 +125,79 @@ TEST(HeavyScenes, StandWhereTheLightOnesStand) {
     }
   }
   EXPECT_EQ(found, coarse.objects.size());
+}
+
+/// Does a line from `eye` to `to` meet an object of the scene that is no more than `last`?
+bool meets(const Scene& scene, ObjectId last, const glm::dvec3& eye, const glm::dvec3& to) {
+  for (ObjectId id = 0; id <= last; ++id) {
+    // In the frame of the cube from -1 to 1.
+    const glm::dmat4x3& place = scene.objects[id].transform;
+    const glm::dmat3 back = glm::inverse(glm::dmat3(place[0], place[1], place[2]));
+    const glm::dvec3 from = back * (eye - place[3]);
+    const glm::dvec3 step = back * (to - eye);
+    double enters = 0.0;
+    double leaves = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double a = (-1.0 - from[axis]) / step[axis];
+      const double b = (1.0 - from[axis]) / step[axis];
+      enters = std::max(enters, std::min(a, b));
+      leaves = std::min(leaves, std::max(a, b));
+    }
+    if (enters < leaves) return true;
+  }
+  return false;
+}
+
+/// How many of the objects after `screens` have all corners of their boxes in the frame of the mesh
+/// behind a screen, and how many none.
+std::pair<std::size_t, std::size_t> hidden_and_seen(const Scene& scene, ObjectId screens,
+                                                    const glm::dvec3& eye) {
+  std::size_t hidden = 0;
+  std::size_t seen = 0;
+  for (ObjectId id = screens; id < scene.object_count(); ++id) {
+    std::size_t covered = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::dvec4 at((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
+                          (corner & 4) != 0 ? 1 : -1, 1);
+      covered += meets(scene, screens - 1, eye, scene.objects[id].transform * at);
+    }
+    hidden += covered == 8;
+    seen += covered == 0;
+  }
+  return {hidden, seen};
+}
+
+TEST(ScreenedRing, HidesTheShareThatItsDialSaysAndNothingElseChanges) {
+  ScreenedRingParameters parameters;
+  parameters.objects = 10;
+  const Scene open = finished(make_screened_ring(parameters));
+  for (const double hidden : {0.0, 0.3, 0.75, 0.95, 1.0}) {
+    parameters.hidden = hidden;
+    const Scene scene = finished(make_screened_ring(parameters));
+    ASSERT_EQ(scene.object_count(), 440U);
+    const auto expected = static_cast<std::size_t>(std::lround(400 * hidden));
+    for (const glm::dvec3& eye : {glm::dvec3(0.0), glm::dvec3(0.2, 0.0, 0.0)}) {
+      EXPECT_EQ(hidden_and_seen(scene, 40, eye), std::make_pair(expected, 400 - expected));
+    }
+    for (ObjectId id = 40; id < 440; ++id) {
+      EXPECT_EQ(scene.objects[id].transform, open.objects[id].transform);
+    }
+  }
+}
+
+TEST(CoveredBars, AreHiddenAtEveryAngleAndTheirBoxesAtNoneButTheFirst) {
+  CoveredBarsParameters parameters;
+  for (const double angle : {0.0, 10.0, 45.0}) {
+    parameters.angle_deg = angle;
+    const Scene scene = finished(make_covered_bars(parameters));
+    ASSERT_EQ(scene.object_count(), 128U);
+    for (const glm::dvec3& eye : {glm::dvec3(-1.0, 0.3, 70.0), glm::dvec3(5.0, 0.0, 70.0)}) {
+      EXPECT_EQ(hidden_and_seen(scene, 64, eye).first, 64U) << angle;
+    }
+    const Aabb box = box_of(scene, 64);
+    const glm::dvec3 corner(box.min.x, box.max.y, box.max.z);
+    EXPECT_EQ(meets(scene, 63, {0.0, 0.0, 70.0}, corner), angle == 0.0) << angle;
+  }
 }
 
 TEST(CityOfBenchmarks, BridgesLieOverMiddleStreetsAtTheirClearance) {

@@ -77,6 +77,37 @@ struct OpenFieldParameters {
 /// another: a box's shadow is less than 4 half sizes long.
 Scene make_open_field(const OpenFieldParameters& parameters);
 
+struct ScreenedRingParameters {
+  double hidden = 0.5;               // share of the sectors that are hidden
+  std::uint32_t sectors = 40;        // at least 8
+  std::uint32_t objects = 60;        // of a sector, beside its screen
+  std::uint32_t min_triangles = 12;  // of an object; a screen has 12
+  std::uint64_t seed = 1;
+};
+
+/// Sectors of a circle about the origin, each with one screen and with cubes 10 m to 60 m off. The
+/// screens of the share `hidden`, spread evenly, stand before the cubes, 8 m from the origin, and
+/// those of the others behind, at 80 m and as much larger: seen from the origin, and up to about
+/// 0.2 m beside it, the cubes of a sector are all hidden or all seen, and no cube hides another.
+/// The cubes do not depend on `hidden`, nor does how many pixels a screen covers. Screens come
+/// first.
+Scene make_screened_ring(const ScreenedRingParameters& parameters);
+
+/// Where covers hide bars from, metres along +z from the bars' plane.
+inline constexpr double covered_bars_eye_m = 70.0;
+
+struct CoveredBarsParameters {
+  double angle_deg = 0.0;  // of the bars to the x axis
+  std::uint32_t columns = 8, rows = 8;
+  std::uint32_t min_triangles = 1200;  // of a bar
+};
+
+/// Bars of 8 m by 0.4 m by 0.4 m in the plane z = 0, 9 m apart and all turned by an angle about z,
+/// each behind a cover of the same shape, 0.15 m larger all round. From (0, 0, covered_bars_eye_m)
+/// and up to 5 m beside it no bar is seen, whatever the angle; the larger it is, the farther a
+/// bar's axis-aligned box reaches beyond its cover. Covers come first.
+Scene make_covered_bars(const CoveredBarsParameters& parameters);
+
 struct PlantParameters {
   double occlusion = 0.7;  // 0: bare frames and pipes; 1: all machines boxed, all bays walled
   std::uint32_t bays_x = 24, bays_z = 12;

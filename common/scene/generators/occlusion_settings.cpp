@@ -96,6 +96,25 @@ SceneMaker open_field(const Settings& table) {
   return [field] { return make_open_field(field); };
 }
 
+SceneMaker screened_ring(const Settings& table) {
+  ScreenedRingParameters ring;
+  ring.hidden = table.number("hidden", 0.0, 1.0, ring.hidden);
+  ring.sectors = whole(table, "sectors", 8, 1000, ring.sectors);
+  ring.objects = whole(table, "objects", 1, 100'000, ring.objects);
+  ring.min_triangles = whole(table, "min_triangles", 12, most_triangles, ring.min_triangles);
+  ring.seed = seed_of(table);
+  return [ring] { return make_screened_ring(ring); };
+}
+
+SceneMaker covered_bars(const Settings& table) {
+  CoveredBarsParameters bars;
+  bars.angle_deg = table.number("angle_deg", 0.0, 90.0, bars.angle_deg);
+  bars.columns = whole(table, "columns", 1, 1000, bars.columns);
+  bars.rows = whole(table, "rows", 1, 1000, bars.rows);
+  bars.min_triangles = whole(table, "min_triangles", 12, most_triangles, bars.min_triangles);
+  return [bars] { return make_covered_bars(bars); };
+}
+
 SceneMaker plant(const Settings& table) {
   PlantParameters plant;
   plant.occlusion = table.number("occlusion", 0.0, 1.0, plant.occlusion);
@@ -160,8 +179,9 @@ SceneMaker touching_spans(const Settings& table) {
 
 using Reader = SceneMaker (*)(const Settings&);
 
-constexpr std::array<std::pair<const char*, Reader>, 12> readers{{
+constexpr std::array<std::pair<const char*, Reader>, 14> readers{{
     {"coplanar_pair", coplanar_pair},
+    {"covered_bars", covered_bars},
     {"crossing_quads", crossing_quads},
     {"cyclic_bars", cyclic_bars},
     {"lattice_wall", lattice_wall},
@@ -170,6 +190,7 @@ constexpr std::array<std::pair<const char*, Reader>, 12> readers{{
     {"open_field", open_field},
     {"plant", plant},
     {"scanline_fence", scanline_fence},
+    {"screened_ring", screened_ring},
     {"slit_wall", slit_wall},
     {"tilted_polygons", tilted_polygons},
     {"touching_spans", touching_spans},
