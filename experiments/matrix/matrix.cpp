@@ -15,7 +15,7 @@ using namespace toml_keys;
 
 /// Patterns of [[exclude]] and [[adjust]]; an empty pattern fits everything.
 struct Pattern {
-  std::string culler = "*", scene = "*", path = "*", resolution = "*";
+  std::string culler = "*", scene = "*", path = "*", resolution = "*", device = "*";
 };
 
 /// Paths of the scenes that fit, instead of those of the lists.
@@ -38,14 +38,16 @@ struct Description {
   std::vector<std::string> paths{""};
   std::vector<Viewport> resolutions{Viewport{}};
   std::vector<int> frames{60};
+  std::vector<std::string> devices;  // canonical; empty: the one of `pass`
   std::vector<OwnPaths> own_paths;
   std::vector<Pattern> excluded;
   std::vector<Adjustment> adjusted;
 };
 
 void read_lists(const toml::table& lists, Description& description, const std::string& file) {
-  refuse_unknown_keys(lists, {"culler", "optional_culler", "scene", "path", "resolution", "frames"},
-                      "[lists]", file);
+  refuse_unknown_keys(
+      lists, {"culler", "optional_culler", "scene", "path", "resolution", "frames", "device"},
+      "[lists]", file);
   if (const auto* node = lists.get("culler"))
     description.cullers = text_list(*node, "culler", file);
   if (const auto* node = lists.get("optional_culler")) {
@@ -61,6 +63,12 @@ void read_lists(const toml::table& lists, Description& description, const std::s
       } catch (const InputError& error) {
         throw InputError(place(file, *node) + ": " + error.what());
       }
+    }
+  }
+  if (const auto* node = lists.get("device")) {
+    description.devices.clear();
+    for (const std::string& text : text_list(*node, "device", file)) {
+      description.devices.push_back(canonical_device(text, node, file));
     }
   }
   if (const auto* node = lists.get("frames")) {
@@ -84,6 +92,7 @@ Pattern read_pattern(const toml::table& table, const std::string& file) {
   read("scene", pattern.scene);
   read("path", pattern.path);
   read("resolution", pattern.resolution);
+  read("device", pattern.device);
   return pattern;
 }
 
@@ -112,6 +121,10 @@ Description read_description(const fs::path& path, const fs::path& folder, int d
     description.text = *text;
   }
   read_pass_settings(root, description.pass, file);
+  if (root.contains("draw")) {
+    description.pass.draw = canonical_device(description.pass.draw, root.get("draw"), file);
+    description.devices.clear();  // of a matrix that this one extends
+  }
   if (const toml::node* lists = root.get("lists")) {
     if (!lists->is_table()) throw InputError(place(file, *lists) + ": write [lists]");
     read_lists(*lists->as_table(), description, file);
@@ -131,15 +144,17 @@ Description read_description(const fs::path& path, const fs::path& folder, int d
   if (const toml::array* excluded = tables(root, "exclude", file)) {
     for (const toml::node& node : *excluded) {
       const toml::table& table = *node.as_table();
-      refuse_unknown_keys(table, {"culler", "scene", "path", "resolution"}, "[[exclude]]", file);
+      refuse_unknown_keys(table, {"culler", "scene", "path", "resolution", "device"}, "[[exclude]]",
+                          file);
       description.excluded.push_back(read_pattern(table, file));
     }
   }
   if (const toml::array* adjusted = tables(root, "adjust", file)) {
     for (const toml::node& node : *adjusted) {
       const toml::table& table = *node.as_table();
-      refuse_unknown_keys(table, {"scene", "path", "resolution", "frames", "rounds", "timeout_s"},
-                          "[[adjust]]", file);
+      refuse_unknown_keys(
+          table, {"scene", "path", "resolution", "device", "frames", "rounds", "timeout_s"},
+          "[[adjust]]", file);
       Adjustment adjustment{read_pattern(table, file), {}, {}, {}};
       if (const auto* n = table.get("frames")) {
         adjustment.frames = whole_number(*n, "frames", 0, 100000, file);
@@ -193,7 +208,8 @@ std::string to_text(const Viewport& viewport) {
 
 bool fits(const Pattern& pattern, const Block& block) {
   return matches(pattern.scene, block.scene) && matches(pattern.path, block.path) &&
-         matches(pattern.resolution, to_text(block.viewport));
+         matches(pattern.resolution, to_text(block.viewport)) &&
+         matches(pattern.device, block.device);
 }
 
 /// The last entry that fits counts.
@@ -210,7 +226,9 @@ const std::vector<std::string>& paths_of(const std::string& scene, const Descrip
 std::string Block::title() const {
   if (!label.empty()) return label;
   return scene + (path.empty() ? "" : ", " + path) + ", " + to_text(viewport) +
-         (device == "none" ? ", not drawn" : "");
+         (device == "none"     ? ", not drawn"
+          : device == "osmesa" ? ""
+                               : ", " + device);
 }
 
 std::vector<std::string> anchor_chains(const Registry& registry) {
@@ -253,38 +271,43 @@ Matrix load_matrix(const std::string& name_or_file, const fs::path& folder,
   Matrix matrix{file.stem().string(), description.text, {}, {}};
   const std::vector<WantedChain> chains =
       chains_of(description, registry, file.string(), matrix.absent);
+  std::vector<std::string> devices = description.devices;
+  if (devices.empty()) devices.push_back(description.pass.draw);
+  const auto add_block = [&](Block block) {
+    for (const Adjustment& adjustment : description.adjusted) {
+      if (!fits(adjustment.pattern, block)) continue;
+      block.frames = adjustment.frames.value_or(block.frames);
+      block.rounds = adjustment.rounds.value_or(block.rounds);
+      block.timeout_s = adjustment.timeout_s.value_or(block.timeout_s);
+    }
+    std::vector<std::string> wanted;
+    for (const WantedChain& chain : chains) {
+      const bool excluded = std::ranges::any_of(description.excluded, [&](const Pattern& pattern) {
+        return fits(pattern, block) &&
+               (matches(pattern.culler, chain.written) || matches(pattern.culler, chain.canonical));
+      });
+      if (!excluded) wanted.push_back(chain.canonical);
+    }
+    if (wanted.empty()) return;
+    block.cullers = with_anchors(wanted, registry);
+    matrix.blocks.push_back(std::move(block));
+  };
   for (const std::string& scene : description.scenes) {
     for (const std::string& path : paths_of(scene, description)) {
       for (const Viewport& viewport : description.resolutions) {
         for (const int frames : description.frames) {
-          Block block{scene,
-                      path,
-                      viewport,
-                      frames,
-                      description.pass.draw,
-                      description.pass.seed,
-                      description.pass.threads,
-                      description.pass.rounds,
-                      description.pass.timeout_s,
-                      {}};
-          for (const Adjustment& adjustment : description.adjusted) {
-            if (!fits(adjustment.pattern, block)) continue;
-            block.frames = adjustment.frames.value_or(block.frames);
-            block.rounds = adjustment.rounds.value_or(block.rounds);
-            block.timeout_s = adjustment.timeout_s.value_or(block.timeout_s);
+          for (const std::string& device : devices) {
+            add_block({scene,
+                       path,
+                       viewport,
+                       frames,
+                       device,
+                       description.pass.seed,
+                       description.pass.threads,
+                       description.pass.rounds,
+                       description.pass.timeout_s,
+                       {}});
           }
-          std::vector<std::string> wanted;
-          for (const WantedChain& chain : chains) {
-            const bool excluded =
-                std::ranges::any_of(description.excluded, [&](const Pattern& pattern) {
-                  return fits(pattern, block) && (matches(pattern.culler, chain.written) ||
-                                                  matches(pattern.culler, chain.canonical));
-                });
-            if (!excluded) wanted.push_back(chain.canonical);
-          }
-          if (wanted.empty()) continue;
-          block.cullers = with_anchors(wanted, registry);
-          matrix.blocks.push_back(std::move(block));
         }
       }
     }

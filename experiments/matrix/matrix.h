@@ -5,7 +5,8 @@
 //   rounds = 5                     timed passes over each path
 //   seed = 1
 //   threads = 2
-//   draw = "osmesa"                or "none": cull without drawing
+//   draw = "osmesa"                a device as in experiments/devices/device_spec.h; "none": cull
+//                                  without drawing
 //   timeout_s = 300                for one cell's pass over the path
 //   [lists]                        every combination is one cell
 //   culler = ["frustum.flat", "frustum.flat > backface.polygon"]
@@ -14,11 +15,12 @@
 //   path = [""]                    "" = the scene's own
 //   resolution = ["512x512"]
 //   frames = [60]                  0 = as many as the path has
+//   device = ["osmesa"]            instead of draw, if there are several
 //   [[paths]]                      scenes that fit take these paths instead of those of [lists]
 //   scene = "hares_*"
 //   path = ["hares_still", "hares_walk"]
 //   [[exclude]]                    leaves out cells; * matches any text
-//   culler = "occlusion.*"
+//   culler = "occlusion.*"         or scene, path, resolution, device
 //   scene = "hares_*"
 //   [[adjust]]                     changes settings of blocks
 //   scene = "hares_252"
@@ -50,7 +52,7 @@ struct Block {
   std::string path;   // name, file, or "" for the scene's own
   Viewport viewport;
   int frames = 60;
-  std::string device = "osmesa";
+  std::string device = "osmesa";  // as parse_device writes it
   std::uint64_t seed = 1;
   int threads = 2;
   int rounds = 5;

@@ -249,8 +249,11 @@ class SweepReader {
     settings_.rounds = pass.rounds;
     settings_.seed = pass.seed;
     settings_.threads = pass.threads;
-    settings_.device = pass.draw;
     settings_.timeout_s = pass.timeout_s;
+    for (const DialValue& value : values_) {
+      devices_.push_back(
+          canonical_device(replaced(pass.draw, value.text), root_.get("draw"), file_));
+    }
     if (const auto* node = root_.get("frames")) {
       settings_.frames = whole_number(*node, "frames", 0, 100000, file_);
     }
@@ -339,7 +342,7 @@ class SweepReader {
   void make_blocks() {
     toml::table scene = table_at(root_, "scene", file_);
     scene.insert("description", sweep_.description);
-    std::map<std::tuple<std::string, std::string, int, int>, std::size_t> known;
+    std::map<std::tuple<std::string, std::string, int, int, std::string>, std::size_t> known;
     std::vector<std::vector<std::string>> chains;
     const std::vector<std::string> scenes = files_of(scene, "");
     std::vector<std::string> paths(values_.size());
@@ -349,9 +352,10 @@ class SweepReader {
       block.scene = scenes[i];
       block.path = paths[i];
       block.viewport = viewports_[i];
-      const auto [found, is_new] =
-          known.try_emplace({block.scene, block.path, block.viewport.width, block.viewport.height},
-                            sweep_.blocks.size());
+      block.device = devices_[i];
+      const auto [found, is_new] = known.try_emplace(
+          {block.scene, block.path, block.viewport.width, block.viewport.height, block.device},
+          sweep_.blocks.size());
       if (is_new) {
         block.label = sweep_.name + ": " + sweep_.dial.setting(i);
         sweep_.blocks.push_back(block);
@@ -369,20 +373,19 @@ class SweepReader {
       sweep_.blocks[i].cullers = with_anchors(chains[i], registry_);
     }
     for (std::size_t i = 0; i < values_.size(); ++i) {
-      sweep_.conditions.push_back(conditions_of(scenes[i], paths[i], viewports_[i]));
+      sweep_.conditions.push_back(conditions_of(sweep_.blocks[sweep_.block_of_value[i]]));
     }
   }
 
-  std::string conditions_of(const std::string& scene, const std::string& path,
-                            const Viewport& viewport) const {
+  std::string conditions_of(const Block& block) const {
     std::ostringstream text;
-    for (const std::string& name : {scene, path}) {
+    for (const std::string& name : {block.scene, block.path}) {
       const auto file = std::ranges::find(sweep_.files, fs::path(name), &SweepFile::file);
       if (file != sweep_.files.end()) text << file->text;
       text << '\n';
     }
-    text << viewport.width << 'x' << viewport.height << ' ' << settings_.frames << ' '
-         << settings_.seed << ' ' << settings_.device;
+    text << block.viewport.width << 'x' << block.viewport.height << ' ' << block.frames << ' '
+         << block.seed << ' ' << block.device;
     return hash_text(text.str());
   }
 
@@ -394,7 +397,8 @@ class SweepReader {
   std::vector<DialValue> values_;
   std::vector<std::string> written_;  // the cullers as they stand in the file
   Block settings_;
-  std::vector<Viewport> viewports_;  // by value of the dial
+  std::vector<Viewport> viewports_;   // by value of the dial
+  std::vector<std::string> devices_;  // likewise
   Sweep sweep_;
 };
 

@@ -15,7 +15,9 @@
 //   [path]                         what a file in data/paths would say; left out: the scene's own
 //   [limit]                        optional; the break point is the first value beyond it
 //   metric = "over"                of `vislab list metrics` (default: false_px)
-//   counter = "plane_tests"        instead of a metric: a counter of the methods, a frame
+//   counter = "plane_tests"        instead of a metric: a counter of the methods, or of what they
+//   ask
+//                                  of the device (DeviceCounts), a frame
 //   at_most = 0.5                  or
 //   at_most_ratio = 2.0            times the figure at the dial's first value, or
 //   at_least = 0.5                 for metrics that are better when higher, and only for them
@@ -27,8 +29,8 @@
 //   source = "…"                   who reports the failure; the range is this lab's prediction
 //   because = "…"                  what the range follows from, in one sentence
 //
-// In the scene, the path, the cullers and the resolution "${dial}" stands for the dial's value:
-// alone in its quotes for the number, within a longer text for its digits.
+// In the scene, the path, the cullers, the resolution and draw "${dial}" stands for the dial's
+// value: alone in its quotes for the number, within a longer text for its digits.
 //
 // Without at_most and at_most_ratio the limit is: for false_px none at all, for approximate methods
 // 1 % of the pixels compared; for over, over_objects and times twice the first value; for all
@@ -87,7 +89,7 @@ struct Sweep {
   SweepDial dial;
   SweepLimit limit;
   std::vector<SweepMethod> methods;
-  /// Values of the dial that leave scene, path and resolution alike share a block.
+  /// Values of the dial that leave scene, path, resolution and device alike share a block.
   std::vector<Block> blocks;
   std::vector<std::size_t> block_of_value;
   /// The scenes and paths that the blocks name, and of a sweep that is not the lab's own its text.

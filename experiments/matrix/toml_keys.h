@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/scene/error.h"
+#include "experiments/devices/device_spec.h"
 
 namespace vislab::toml_keys {
 
@@ -89,12 +90,22 @@ inline const toml::array* tables(const toml::table& root, std::string_view key,
   return node->as_array();
 }
 
+/// A device's text as results are kept under it.
+inline std::string canonical_device(const std::string& text, const toml::node* node,
+                                    const std::string& file) {
+  try {
+    return parse_device(text).text;
+  } catch (const InputError& error) {
+    throw InputError((node == nullptr ? file : place(file, *node)) + ": " + error.what());
+  }
+}
+
 /// How often and where the cells of a matrix or a sweep run.
 struct PassSettings {
   int rounds = 5;
   std::uint64_t seed = 1;
   int threads = 2;
-  std::string draw = "osmesa";
+  std::string draw = "osmesa";  // as written
   double timeout_s = 300.0;
 };
 
@@ -113,13 +124,7 @@ inline void read_pass_settings(const toml::table& root, PassSettings& pass,
   if (const auto* node = root.get("threads")) {
     pass.threads = whole_number(*node, "threads", 1, 1024, file);
   }
-  if (auto draw = value_of<std::string>(root, "draw", "a text", file)) {
-    if (*draw != "osmesa" && *draw != "none") {
-      throw InputError(place(file, *root.get("draw")) + ": " +
-                       unknown_name("value of draw", *draw, {"osmesa", "none"}).what());
-    }
-    pass.draw = *draw;
-  }
+  if (auto draw = value_of<std::string>(root, "draw", "a text", file)) pass.draw = *draw;
   if (auto seconds = value_of<double>(root, "timeout_s", "a number of seconds", file)) {
     if (!(*seconds > 0.0)) {
       throw InputError(place(file, *root.get("timeout_s")) + ": timeout_s must be above 0");

@@ -83,6 +83,22 @@ CostTable costs_from_json(const json& list) {
   return costs;
 }
 
+json model_to_json(const GpuModel& model) {
+  json dials = json::object();
+  for (const GpuDial& dial : gpu_dials()) dials[std::string(dial.name)] = dial.value(model);
+  return dials;
+}
+
+/// A dial that the program did not know then stays at its default.
+GpuModel model_from_json(const json& dials) {
+  GpuModel model;
+  for (const GpuDial& dial : gpu_dials()) {
+    const auto found = dials.find(std::string(dial.name));
+    if (found != dials.end()) dial.set(model, found->get<double>());
+  }
+  return model;
+}
+
 }  // namespace
 
 std::string CellKey::id() const { return hash_text(key_to_json(*this).dump()); }
@@ -165,6 +181,7 @@ std::string to_json(const ResultCell& cell) {
             {"anchors", anchors},
             {"context", cell.context}};
   if (cell.costs) j["costs"] = costs_to_json(*cell.costs);
+  if (cell.device_model) j["device_model"] = model_to_json(*cell.device_model);
   // Names of files need not be UTF-8: what is not is replaced.
   return j.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
 }
@@ -226,6 +243,7 @@ std::optional<ResultCell> parse_cell(const std::string& text, const std::string&
     }
     cell.context = j.at("context").get<std::map<std::string, std::string>>();
     if (j.contains("costs")) cell.costs = costs_from_json(j.at("costs"));
+    if (j.contains("device_model")) cell.device_model = model_from_json(j.at("device_model"));
     return cell;
   });
 }

@@ -9,6 +9,7 @@
 
 #include "common/culler/culler.h"
 #include "common/geometry/camera.h"
+#include "common/render/gpu_model.h"
 
 namespace vislab {
 
@@ -19,7 +20,7 @@ struct CellKey {
   std::string path_hash;   // Path::content_hash
   Viewport viewport;
   std::uint64_t seed = 1;
-  std::string device = "osmesa";  // or "none": nothing is drawn
+  std::string device = "osmesa";  // as parse_device writes it; "none": nothing is drawn
   int threads = 2;
   std::string simd;     // instruction set that run-time dispatch chose
   std::string sources;  // hash of the sources that the chain's families depend on
@@ -85,6 +86,8 @@ struct ResultCell {
   std::map<std::string, std::string> context;               // machine, compiler, revision, …
   /// What drawing and testing cost when it was measured; none in results from before it was.
   std::optional<CostTable> costs;
+  /// The dials of a modelled device, fitted ones included; none on other devices.
+  std::optional<GpuModel> device_model = {};
 };
 
 std::string to_string(ResultCell::Status status);

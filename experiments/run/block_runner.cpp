@@ -10,12 +10,13 @@
 
 #include "common/geometry/random.h"
 #include "common/judge/path_truth.h"
-#include "common/render/osmesa_device.h"
 #include "common/scene/error.h"
 #include "common/simd/simd_target.h"
 #include "experiments/calibration/calibration.h"
+#include "experiments/calibration/device_fit.h"
 #include "experiments/context/context.h"
 #include "experiments/context/sources.h"
+#include "experiments/devices/device_spec.h"
 #include "experiments/run/block_judge.h"
 #include "experiments/run/path_run.h"
 
@@ -56,6 +57,7 @@ class BlockRun {
   BlockRun(const Block& block, const RunSettings& settings, const Registry& registry,
            Progress& progress, const CellWatch& watch, const volatile std::sig_atomic_t& stop)
       : block_(block),
+        device_spec_(parse_device(block.device)),
         settings_(settings),
         registry_(registry),
         progress_(progress),
@@ -89,7 +91,8 @@ class BlockRun {
     scene_description_ = loaded.description;
     scene_ = std::make_unique<Scene>(std::move(loaded.scene));
     if (scene_->object_count() > largest_drawn_scene_objects) {
-      block_.device = "none";
+      device_spec_ = parse_device("none");
+      block_.device = device_spec_.text;
       block_.frames = block_.frames == 0
                           ? static_cast<int>(most_frames_of_larger_scenes)
                           : std::min(block_.frames, static_cast<int>(most_frames_of_larger_scenes));
@@ -134,6 +137,11 @@ class BlockRun {
       // or with rounds missing, it is measured anew.
       const bool whole = static_cast<int>(stored->rounds.size()) >= block_.rounds;
       if (!whole || stored->context["machine"] == context_["machine"]) stored.reset();
+    }
+    // What is fitted now is not what its first rounds were measured with.
+    if (stored && !failed && device_spec_.is_fitted() &&
+        static_cast<int>(stored->rounds.size()) < block_.rounds) {
+      stored.reset();
     }
     if (stored) {
       const std::string name = runner.cell.culler;
@@ -228,14 +236,10 @@ class BlockRun {
 
   void build_cullers() {
     // Mesa reads this when its first context is made.
-    ::setenv("LP_NUM_THREADS", std::to_string(block_.threads).c_str(), 1);
-    if (block_.device != "none") {
-      device_ = std::make_unique<OsMesaDevice>();
-      device_->load(*scene_);
-      timed_device_ = std::make_unique<TimedDevice>(*device_);
-    }
-    context_["device"] = device_ ? device_->description() : "none";
+    const int drawing_threads = device_spec_.drawing_threads(block_.threads);
+    ::setenv("LP_NUM_THREADS", std::to_string(drawing_threads).c_str(), 1);
     const CostTable costs = costs_of_block();
+    make_device_of_block();
     BuildContext build_context;
     build_context.cullers = &registry_;
     build_context.truth = truth_.get();
@@ -256,6 +260,7 @@ class BlockRun {
         runner.cell.context = context_;
         // Rounds of one cell are of one build: what was handed to the first is handed to all.
         if (!runner.cell.costs || runner.cell.rounds.empty()) runner.cell.costs = costs;
+        runner.cell.device_model = device_model_;
         // On record before it starts, so that a failure has a place to be written to. What was
         // there before stays until there is something better.
         if (!store_.load_cell(runner.cell.key.id())) store_.save_cell(runner.cell);
@@ -272,8 +277,35 @@ class BlockRun {
     }
   }
 
+  void make_device_of_block() {
+    GpuModel preset_model;
+    if (device_spec_.is_fitted()) {
+      preset_model = fit_of_block();
+    } else if (device_spec_.kind == DeviceSpec::Kind::modelled) {
+      preset_model = gpu_preset(device_spec_.preset).model;
+    }
+    device_ = make_device(device_spec_, preset_model);
+    if (device_) {
+      device_->load(*scene_);
+      timed_device_ = std::make_unique<TimedDevice>(*device_);
+    }
+    if (device_spec_.kind == DeviceSpec::Kind::modelled) {
+      device_model_ = device_spec_.model(preset_model);
+    }
+    context_["device"] = device_ ? device_->description() : "none";
+  }
+
+  GpuModel fit_of_block() {
+    const auto known = settings_.device_fits.find(device_spec_.drawing_threads(block_.threads));
+    if (known != settings_.device_fits.end()) return known->second;
+    progress_.step(block_.title() + ": fitting the modelled device", 0.2);
+    const GpuModel model = fit_device().model;
+    watch_.fitted(model);
+    return model;
+  }
+
   CostTable costs_of_block() {
-    const auto known = settings_.costs.find(block_.threads);
+    const auto known = settings_.costs.find(device_spec_.drawing_threads(block_.threads));
     if (known != settings_.costs.end()) return known->second;
     progress_.step(block_.title() + ": what drawing and testing cost", 0.2);
     const CostTable costs = calibrate();
@@ -344,11 +376,17 @@ class BlockRun {
   }
 
   /// The first pass gives the answers; a later one that differs makes the cell fail, unless the
-  /// culler says that its answers depend on time.
+  /// culler says that its answers depend on time, and time is real.
   void add_answers(ResultCell& cell, PathRun& run) {
+    const bool is_modelled = device_spec_.kind == DeviceSpec::Kind::modelled;
+    const bool repeats =
+        cell.repeatability != Repeatability::timing || is_modelled || device_spec_.synchronous;
+    if (is_modelled && !cell.rounds.empty() && cell.rounds.front().frame_ms != run.round.frame_ms) {
+      throw std::runtime_error("the modelled device's times differ from an earlier round's");
+    }
     for (std::size_t i = 0; i < run.frames.size(); ++i) {
       run.frames[i].truth = truth_keys_[i];
-      if (!cell.frames.empty() && cell.repeatability != Repeatability::timing &&
+      if (!cell.frames.empty() && repeats &&
           (cell.frames[i].set != run.frames[i].set ||
            cell.frames[i].one_sided != run.frames[i].one_sided ||
            cell.frames[i].surface != run.frames[i].surface ||
@@ -377,11 +415,12 @@ class BlockRun {
     }
     if (judged.empty()) return;
     trace_truth();
-    judge_cells(judged, *scene_, path_, block_.viewport, *truth_, *caster_, block_.device != "none",
-                store_, progress_);
+    judge_cells(judged, *scene_, path_, block_.viewport, *truth_, *caster_,
+                device_spec_.kind != DeviceSpec::Kind::none, store_, progress_);
   }
 
   Block block_;
+  DeviceSpec device_spec_;
   const RunSettings& settings_;
   const Registry& registry_;
   Progress& progress_;
@@ -397,7 +436,8 @@ class BlockRun {
   std::unique_ptr<RayCaster> caster_;
   std::unique_ptr<PathTruth> truth_;
   std::vector<std::string> truth_keys_;
-  std::unique_ptr<OsMesaDevice> device_;
+  std::unique_ptr<RenderDevice> device_;  // null: nothing is drawn
+  std::optional<GpuModel> device_model_;  // of a modelled device
   std::unique_ptr<TimedDevice> timed_device_;
   std::vector<Runner> runners_;
 };

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/culler/registry.h"
+#include "common/render/gpu_model.h"
 #include "common/scene/library.h"
 #include "experiments/matrix/matrix.h"
 #include "experiments/run/progress.h"
@@ -25,7 +26,9 @@ struct RunSettings {
   bool force = false;              // measure again what was not measured by this run
   bool retry_failed = false;       // try failed cells again
   std::set<std::string> given_up;  // ids of cells that this run does not try again
-  std::map<int, CostTable> costs;  // measured by this run before, by number of threads
+  // Measured by this run before, by the number of threads that Mesa draws with.
+  std::map<int, CostTable> costs;
+  std::map<int, GpuModel> device_fits;
 };
 
 struct BlockOutcome {
@@ -42,13 +45,18 @@ struct CellWatch {
   std::function<void()> end;
   /// The block has measured what drawing and testing cost with its number of threads.
   std::function<void(const CostTable& costs)> calibrated;
+  /// The block has fitted a modelled device to OSMesa.
+  std::function<void(const GpuModel& model)> fitted;
 };
 
 /// Cells that are done are left alone; the others get the rounds that are missing, interleaved with
 /// the block's anchors in shuffled order. They are saved after each whole round: a round counts
 /// only together with its anchors. What drawing and testing cost is measured before the first
-/// round, unless the settings have it. A cell that fails is stored with its reason. `stop` ends the
-/// run after the present pass. Throws InputError for scenes, paths and results that are wrong.
+/// round, unless the settings have it; so are the dials of a modelled device that are fitted. Cells
+/// on a modelled device repeat whatever their methods declare: their times are the device's own,
+/// and a round that gives others is a failure. A cell that fails is stored with its reason. `stop`
+/// ends the run after the present pass. Throws InputError for scenes, paths and results that are
+/// wrong.
 BlockOutcome run_block(const Block& block, const RunSettings& settings, const Registry& registry,
                        Progress& progress, const CellWatch& watch,
                        const volatile std::sig_atomic_t& stop);

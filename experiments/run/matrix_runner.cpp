@@ -18,6 +18,7 @@
 #include <stdexcept>
 
 #include "common/scene/error.h"
+#include "experiments/devices/device_spec.h"
 #include "experiments/results/hash.h"
 #include "experiments/results/store.h"
 
@@ -113,16 +114,34 @@ CostTable costs_from_text(std::istream& in) {
   return costs;
 }
 
+std::string to_line(const GpuModel& model) {
+  std::ostringstream text;
+  text.precision(std::numeric_limits<double>::max_digits10);
+  for (const GpuDial& dial : gpu_dials()) text << " " << dial.value(model);
+  return text.str();
+}
+
+GpuModel model_from_line(std::istream& in) {
+  GpuModel model;
+  for (const GpuDial& dial : gpu_dials()) {
+    double value = 0.0;
+    in >> value;
+    dial.set(model, value);
+  }
+  return model;
+}
+
 /// The child: runs the block and tells the parent what it does. Messages:
-///   cell ID SECONDS | idle | costs NS LOW HIGH for each quantity | member ID | outcome MEASURED
-///   PRESENT FAILED STOPPED | error TEXT | failure TEXT
+///   cell ID SECONDS | idle | costs NS LOW HIGH for each quantity | fit VALUE for each dial |
+///   member ID | outcome MEASURED PRESENT FAILED STOPPED | error TEXT | failure TEXT
 int run_child(int pipe, const Block& block, const RunSettings& settings, const Registry& registry,
               Progress& progress) {
   const CellWatch watch{[&](const std::string& id, double seconds) {
                           tell(pipe, "cell " + id + " " + std::to_string(seconds));
                         },
                         [&] { tell(pipe, "idle"); },
-                        [&](const CostTable& costs) { tell(pipe, "costs" + to_text(costs)); }};
+                        [&](const CostTable& costs) { tell(pipe, "costs" + to_text(costs)); },
+                        [&](const GpuModel& model) { tell(pipe, "fit" + to_line(model)); }};
   try {
     const BlockOutcome outcome =
         run_block(block, settings, registry, progress, watch, stop_requested);
@@ -145,6 +164,7 @@ int run_child(int pipe, const Block& block, const RunSettings& settings, const R
 /// What the parent knows of a child.
 struct Child {
   std::optional<CostTable> costs;  // that it measured
+  std::optional<GpuModel> fit;     // likewise
   std::string cell;                // that runs now; "" between cells
   std::chrono::steady_clock::time_point deadline;
   std::optional<BlockOutcome> outcome;
@@ -168,6 +188,8 @@ void take_message(const std::string& line, Child& child) {
     child.cell.clear();
   } else if (word == "costs") {
     child.costs = costs_from_text(in);
+  } else if (word == "fit") {
+    child.fit = model_from_line(in);
   } else if (word == "member") {
     in >> child.members.emplace_back();
   } else if (word == "outcome") {
@@ -283,7 +305,9 @@ RunOutcome run_blocks(const std::vector<Block>& blocks, const RunOptions& option
     // A cell that brings the process down is marked as failed and left out of the next attempt.
     for (std::size_t attempt = 0; attempt <= block.cullers.size(); ++attempt) {
       const Child child = run_in_child(block, settings, registry, progress);
-      if (child.costs) settings.costs[block.threads] = *child.costs;
+      const int threads = parse_device(block.device).drawing_threads(block.threads);
+      if (child.costs) settings.costs[threads] = *child.costs;
+      if (child.fit) settings.device_fits[threads] = *child.fit;
       total.cells.insert(child.members.begin(), child.members.end());
       std::vector<std::string>& members = total.cells_of_block[mine[i]];
       members.insert(members.end(), child.members.begin(), child.members.end());

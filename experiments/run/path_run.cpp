@@ -1,6 +1,7 @@
 #include "experiments/run/path_run.h"
 
 #include <chrono>
+#include <optional>
 
 #include "experiments/results/store.h"
 
@@ -58,12 +59,14 @@ PathRun run_path(ICuller& culler, const Scene& scene, const Path& path, const Vi
     const auto end = Clock::now();
     sink.record_rest();
 
-    last_frame_ms = Milliseconds(end - start).count();
+    const std::optional<double> clock_ms = device != nullptr ? device->clock_ms() : std::nullopt;
+    last_frame_ms = clock_ms.value_or(Milliseconds(end - start).count());
     run.round.frame_ms.push_back(last_frame_ms);
     run.round.update_us.push_back(1e3 * Milliseconds(updated - begun).count());
     run.round.cull_us.push_back(
         1e3 * (Milliseconds(culled - updated).count() - (device_after_ms - device_before_ms)));
-    run.round.draw_ms.push_back(device != nullptr ? device->milliseconds() : 0.0);
+    run.round.draw_ms.push_back(
+        clock_ms.value_or(device != nullptr ? device->milliseconds() : 0.0));
 
     VisibleSet set = sink.recording().set();
     CellFrame answer;
@@ -81,6 +84,11 @@ PathRun run_path(ICuller& culler, const Scene& scene, const Path& path, const Vi
     for (std::size_t k = 0; k < after.size(); ++k) {
       const std::uint64_t old = k < before.size() ? before[k].second : 0;
       answer.counters[std::string(after[k].first)] = after[k].second - old;
+    }
+    if (device != nullptr && culler.info().needs_device) {
+      for (const auto& [name, count] : device->counts().named()) {
+        answer.counters[std::string(name)] = count;
+      }
     }
     before = std::move(after);
     run.frames.push_back(std::move(answer));

@@ -41,7 +41,11 @@ struct PathRun {
 
 /// Resets the culler and runs it over the path. `device` may be null: nothing is drawn.
 /// frame_ms is wall time from update to the device's finish; draw_ms the time inside device calls;
-/// cull_us that of cull() without them.
+/// cull_us that of cull() without them. On a device that keeps a clock (RenderDevice::clock_ms)
+/// frame_ms and draw_ms are its clock after finish(), and nothing else is in them; update_us and
+/// cull_us are real time there, too, which is in neither. What cullers that need a device ask of it
+/// (DeviceCounts) stands among their counters, in place of what they count themselves by the same
+/// names.
 PathRun run_path(ICuller& culler, const Scene& scene, const Path& path, const Viewport& viewport,
                  std::uint64_t seed, SceneState& state, TimedDevice* device);
 

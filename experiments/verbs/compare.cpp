@@ -59,7 +59,8 @@ int compare(const Lab& lab, const std::string& a, const std::string& b,
   for (const JudgedCell& judged : cells) by_id[judged.cell.key.id()] = &judged.cell;
 
   Table table({"scene", "path", "a", "b", "ratio", "ratio_low", "ratio_high", "frame_ms_a",
-               "frame_ms_b", "false_px_a", "false_px_b", "over_a", "over_b"});
+               "frame_ms_p99_a", "frame_ms_b", "frame_ms_p99_b", "device", "false_px_a",
+               "false_px_b", "over_a", "over_b"});
   bool any = false;
   for (const BlockSummary& block : summarise(cells)) {
     const CellSummary* const in_a = find_cell(block, chain_a);
@@ -71,7 +72,8 @@ int compare(const Lab& lab, const std::string& a, const std::string& b,
       return cell.judged ? TableValue(value) : TableValue();
     };
     table.add({block.scene, block.path, in_a->culler, in_b->culler, ratio.value, ratio.low,
-               ratio.high, in_a->frame_ms.median.value, in_b->frame_ms.median.value,
+               ratio.high, in_a->frame_ms.median.value, in_a->frame_ms.p99,
+               in_b->frame_ms.median.value, in_b->frame_ms.p99, block.device,
                judged(*in_a, in_a->false_px), judged(*in_b, in_b->false_px),
                judged(*in_a, in_a->over), judged(*in_b, in_b->over)});
   }

@@ -3,6 +3,7 @@
 
 #include "common/judge/metrics.h"
 #include "common/scene/error.h"
+#include "experiments/devices/device_spec.h"
 #include "experiments/matrix/matrix.h"
 #include "experiments/matrix/sweep.h"
 #include "experiments/verbs/table.h"
@@ -41,6 +42,13 @@ std::string joined(const std::vector<std::string>& parts, const std::string& sep
   return text;
 }
 
+void add_parameter(const ParameterSpec& parameter, const std::string& stage, Facts& facts) {
+  facts.add("parameter " + parameter.name,
+            "default " + parameter.default_value +
+                (parameter.unit.empty() ? "" : " " + parameter.unit) + "; " + parameter.allowed() +
+                "; " + stage + parameter.meaning);
+}
+
 void describe_culler(const Registry& cullers, const std::string& chain, bool json) {
   const std::unique_ptr<ICuller> culler = cullers.make(chain);
   const CullerInfo& info = culler->info();
@@ -59,12 +67,8 @@ void describe_culler(const Registry& cullers, const std::string& chain, bool jso
   facts.add("limits", info.limits);
   facts.add("sources", joined(info.sources, "; "));
   for (const ParameterSpec& parameter : info.parameters) {
-    facts.add("parameter " + parameter.name,
-              "default " + parameter.default_value +
-                  (parameter.unit.empty() ? "" : " " + parameter.unit) + "; " +
-                  parameter.allowed() + "; " +
-                  (parameter.stage == ParameterSpec::Stage::build ? "build" : "query") + "; " +
-                  parameter.meaning);
+    add_parameter(parameter, parameter.stage == ParameterSpec::Stage::build ? "build; " : "query; ",
+                  facts);
   }
   facts.print(std::cout, json);
 }
@@ -121,6 +125,23 @@ void describe_sweep(const Lab& lab, const std::string& name, bool json) {
   facts.print(std::cout, json);
 }
 
+/// The dials of a modelled device stand with the defaults of its preset.
+void describe_device(const std::string& text, bool json) {
+  const DeviceSpec device = parse_device(text);
+  Facts facts;
+  facts.add("name", device.text);
+  for (const auto& [name, meaning] : list_devices()) {
+    if (name == device.text) facts.add("meaning", meaning);
+  }
+  if (device.kind == DeviceSpec::Kind::modelled) {
+    facts.add("preset " + device.preset, std::string(gpu_preset(device.preset).meaning));
+  }
+  for (const ParameterSpec& parameter : device_parameters(device)) {
+    add_parameter(parameter, "", facts);
+  }
+  facts.print(std::cout, json);
+}
+
 bool describe_metric(const std::string& name, bool json) {
   const auto metric = std::ranges::find(metrics(), name, &Metric::name);
   if (metric == metrics().end()) return false;
@@ -138,6 +159,10 @@ int describe(const Lab& lab, const std::string& name, bool json) {
   const std::string first = name.substr(0, name.find_first_of("[> "));
   if (lab.cullers.entries().contains(first)) {
     describe_culler(lab.cullers, name, json);
+    return 0;
+  }
+  if (first == "osmesa" || first == "modelled") {
+    describe_device(name, json);
     return 0;
   }
   const auto scenes = list_scenes(lab.data);
@@ -163,7 +188,8 @@ int describe(const Lab& lab, const std::string& name, bool json) {
   if (describe_metric(name, json)) return 0;
   throw InputError(
       "nothing is called '" + name +
-      "'; see 'vislab list cullers', 'list scenes', 'list matrices' and 'list metrics'");
+      "'; see 'vislab list cullers', 'list scenes', 'list matrices', 'list metrics' and 'list "
+      "devices'");
 }
 
 }  // namespace vislab

@@ -2,6 +2,7 @@
 
 #include "common/judge/metrics.h"
 #include "common/scene/error.h"
+#include "experiments/devices/device_spec.h"
 #include "experiments/matrix/matrix.h"
 #include "experiments/matrix/sweep.h"
 #include "experiments/verbs/table.h"
@@ -52,6 +53,12 @@ void list_metrics(bool json) {
   table.print(std::cout, json);
 }
 
+void list_devices_of(bool json) {
+  Table table({"name", "meaning"});
+  for (const auto& [name, meaning] : list_devices()) table.add({name, meaning});
+  table.print(std::cout, json);
+}
+
 }  // namespace
 
 int list(const Lab& lab, const std::string& what, bool json) {
@@ -63,8 +70,10 @@ int list(const Lab& lab, const std::string& what, bool json) {
     list_matrices_of(lab, json);
   } else if (what == "metrics") {
     list_metrics(json);
+  } else if (what == "devices") {
+    list_devices_of(json);
   } else {
-    throw unknown_name("list", what, {"cullers", "scenes", "matrices", "metrics"});
+    throw unknown_name("list", what, {"cullers", "scenes", "matrices", "metrics", "devices"});
   }
   return 0;
 }

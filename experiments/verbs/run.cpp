@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "common/scene/error.h"
+#include "experiments/devices/device_spec.h"
 #include "experiments/matrix/resolution.h"
 #include "experiments/run/matrix_runner.h"
 #include "experiments/verbs/present_results.h"
@@ -69,7 +70,7 @@ Work work_of(const Lab& lab, const RunCall& call) {
     block.viewport = parse_resolution(call.resolution);
     block.frames = call.frames;
     block.rounds = call.rounds;
-    block.device = call.draw;
+    block.device = parse_device(call.draw).text;
     block.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     work.blocks = single_block(call.culler, block, lab.cullers).blocks;
   }
@@ -123,24 +124,40 @@ std::pair<int, int> parse_shard(const std::string& text) {
 
 /// The cells of a run, in the columns that a first look needs.
 void print_results(const Lab& lab, const RunCall& call, const std::set<std::string>& ids) {
-  Table table({"scene", "path", "frames", "culler", "status", "frame_ms", "against_none", "cull_us",
-               "draw_ms", "submitted_triangles", "over", "recall", "false_px", "pixels", "image_px",
-               "surface_px", "false_objects", "false_triangles", "excused_px"});
+  Table table({"scene",        "path",       "frames",        "culler",
+               "device",       "status",     "frame_ms",      "frame_ms_p99",
+               "against_none", "cull_us",    "draw_ms",       "submitted_triangles",
+               "over",         "recall",     "false_px",      "pixels",
+               "image_px",     "surface_px", "false_objects", "false_triangles",
+               "excused_px"});
   for (const BlockSummary& block : summarise(present_cells(call.results, lab.cullers))) {
     for (const CellSummary& cell : block.cells) {
       if (!ids.contains(cell.id)) continue;
       const auto judged = [&](auto value) {
         return cell.judged ? TableValue(value) : TableValue();
       };
-      table.add({block.scene, block.path, static_cast<std::uint64_t>(block.frames), cell.culler,
+      table.add({block.scene,
+                 block.path,
+                 static_cast<std::uint64_t>(block.frames),
+                 cell.culler,
+                 block.device,
                  cell.status == ResultCell::Status::failed ? "failed: " + cell.reason
                                                            : to_string(cell.status),
-                 cell.frame_ms.median.value, cell.against_none.value, cell.cull_us.median.value,
-                 cell.draw_ms.median.value, cell.submitted_triangles, judged(cell.over),
-                 judged(cell.recall), judged(cell.false_px), judged(cell.pixels),
+                 cell.frame_ms.median.value,
+                 cell.frame_ms.p99,
+                 cell.against_none.value,
+                 cell.cull_us.median.value,
+                 cell.draw_ms.median.value,
+                 cell.submitted_triangles,
+                 judged(cell.over),
+                 judged(cell.recall),
+                 judged(cell.false_px),
+                 judged(cell.pixels),
                  cell.drawn ? judged(cell.image_px) : TableValue(),
-                 cell.paints ? judged(cell.surface_px) : TableValue(), judged(cell.false_objects),
-                 judged(cell.false_triangles), judged(cell.excused_px)});
+                 cell.paints ? judged(cell.surface_px) : TableValue(),
+                 judged(cell.false_objects),
+                 judged(cell.false_triangles),
+                 judged(cell.excused_px)});
     }
   }
   table.print(std::cout, call.json);

@@ -22,9 +22,9 @@ struct Lab {
   std::filesystem::path report;     // templates
 };
 
-/// `what` is cullers, scenes, matrices or metrics.
+/// `what` is cullers, scenes, matrices, metrics or devices.
 int list(const Lab& lab, const std::string& what, bool json);
-/// `name` is a culler, a chain, a scene, a matrix, a sweep or a metric.
+/// `name` is a culler, a chain, a scene, a matrix, a sweep, a metric or a device.
 int describe(const Lab& lab, const std::string& name, bool json);
 
 struct RunCall {
@@ -34,7 +34,7 @@ struct RunCall {
   std::string resolution = "512x512";
   int frames = 0;  // 0 = as many as the path has
   int rounds = 5;
-  std::string draw = "osmesa";
+  std::string draw = "osmesa";  // a device, as parse_device takes it
   int threads = 0;  // 0 = as the matrix says, or all cores
   std::string filter;
   std::filesystem::path results;
