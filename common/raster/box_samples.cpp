@@ -125,8 +125,10 @@ BoxSamples count_box_samples(const WindowTransform& window, const TileStore& til
                         (i & 4) != 0 ? box.max.z : box.min.z});
   }
   std::int64_t area = 0;
+  std::int64_t outlines = 0;
   const auto count = [&](const SetupTriangle& face) {
     area += covered_area(face, window.viewport());
+    outlines += outline(face, window.viewport());
     samples.passed += FaceCount(tiles, face).passed();
   };
   for (const std::array<std::size_t, 4>& face : faces) {
@@ -152,6 +154,7 @@ BoxSamples count_box_samples(const WindowTransform& window, const TileStore& til
     }
   }
   samples.covered = samples_of_area(area);
+  samples.outline_px = static_cast<std::uint64_t>(outlines / outline_units);
   return samples;
 }
 

@@ -24,6 +24,7 @@ namespace vislab {
 struct BoxSamples {
   std::uint64_t covered = 0;  // of the image, by area (covered_area.h)
   std::uint64_t passed = 0;
+  std::uint64_t outline_px = 0;  // widths and heights of its faces in sum (covered_area.h)
 
   friend bool operator==(const BoxSamples&, const BoxSamples&) = default;
 };

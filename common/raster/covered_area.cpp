@@ -74,6 +74,20 @@ std::int64_t area(const Edges& edges, std::int32_t x0, std::int32_t y0, std::int
   return cut_area(edges, {-0.5, -0.5}, high);
 }
 
+/// Edges go around, so that each side of the rectangle about them is passed there and back.
+std::int64_t outline_of(const std::array<double, edge_count>& a,
+                        const std::array<double, edge_count>& b, const Viewport& image) {
+  double width = 0.0, height = 0.0;
+  for (std::size_t k = 0; k < edge_count; ++k) {
+    width += 0.5 * std::abs(b[k]);
+    height += 0.5 * std::abs(a[k]);
+  }
+  const auto unit = static_cast<double>(outline_units);
+  const double triangles = a[3] != 0.0 || b[3] != 0.0 ? 2.0 : 1.0;
+  return static_cast<std::int64_t>(
+      triangles * (std::min(width, unit * image.width) + std::min(height, unit * image.height)));
+}
+
 }  // namespace
 
 std::int64_t covered_area(const SetupTriangle& triangle, const Viewport& image) {
@@ -98,6 +112,25 @@ std::int64_t covered_area(const TriangleBlock& block, std::size_t lane, const Vi
     edges.b[k] = block.b[k][lane];
   }
   return area(edges, block.x0[lane], block.y0[lane], block.x1[lane], block.y1[lane], image);
+}
+
+std::int64_t outline(const SetupTriangle& triangle, const Viewport& image) {
+  std::array<double, edge_count> a, b;
+  for (std::size_t k = 0; k < edge_count; ++k) {
+    a[k] = triangle.edges[k].a;
+    b[k] = triangle.edges[k].b;
+  }
+  return outline_of(a, b, image);
+}
+
+std::int64_t outline(const TriangleBlock& block, std::size_t lane, const Viewport& image) {
+  if (block.x0[lane] >= block.x1[lane] || block.y0[lane] >= block.y1[lane]) return 0;
+  std::array<double, edge_count> a, b;
+  for (std::size_t k = 0; k < edge_count; ++k) {
+    a[k] = block.a[k][lane];
+    b[k] = block.b[k][lane];
+  }
+  return outline_of(a, b, image);
 }
 
 }  // namespace vislab

@@ -26,6 +26,13 @@ std::int64_t covered_area(const SetupTriangle& triangle, const Viewport& image);
 /// Of a lane of a block; 0 for lanes without a triangle.
 std::int64_t covered_area(const TriangleBlock& block, std::size_t lane, const Viewport& image);
 
+/// Width and height of a triangle, at most the image's, in sum; of a convex quadrilateral those of
+/// the two triangles that it is made of. How many blocks of samples are covered in part goes with
+/// it. In units of outline_units a pixel; 0 for lanes without a triangle.
+inline constexpr std::int64_t outline_units = 256;
+std::int64_t outline(const SetupTriangle& triangle, const Viewport& image);
+std::int64_t outline(const TriangleBlock& block, std::size_t lane, const Viewport& image);
+
 /// Rounded to the next whole number of samples.
 inline std::uint64_t samples_of_area(std::int64_t area) {
   return static_cast<std::uint64_t>((area + covered_units / 2) / covered_units);

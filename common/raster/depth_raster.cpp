@@ -114,9 +114,10 @@ std::size_t DepthRaster::draw(std::span<const RasterDraw> draws) {
   return scratch.drawn;
 }
 
-void DepthRaster::draw_counted(std::span<const RasterDraw> draws,
-                               std::span<std::uint64_t> samples) {
+void DepthRaster::draw_counted(std::span<const RasterDraw> draws, std::span<std::uint64_t> samples,
+                               std::span<std::uint64_t> outlines_px) {
   std::ranges::fill(samples, 0);
+  std::ranges::fill(outlines_px, 0);
   collect_clusters(draws);
   SetupScratch& scratch = work_->parts.front();
   Rows rows(window_);
@@ -129,17 +130,21 @@ void DepthRaster::draw_counted(std::span<const RasterDraw> draws,
     const std::size_t first = next_lane();
     set_up_cluster(window_, options_.setup, options_.ids, r, cluster, scratch);
     std::int64_t area = 0;
+    std::int64_t outlines = 0;
     for (std::size_t lane = first; lane < next_lane(); ++lane) {
-      area += covered_area(scratch.blocks[lane / TriangleBlock::lanes], lane % TriangleBlock::lanes,
-                           viewport());
+      const TriangleBlock& block = scratch.blocks[lane / TriangleBlock::lanes];
+      area += covered_area(block, lane % TriangleBlock::lanes, viewport());
+      outlines += outline(block, lane % TriangleBlock::lanes, viewport());
     }
     // Areas until all clusters of a draw, which need not follow each other, are drawn.
-    samples[static_cast<std::size_t>(cluster.draw - draws.data())] +=
-        static_cast<std::uint64_t>(area);
+    const auto place = static_cast<std::size_t>(cluster.draw - draws.data());
+    samples[place] += static_cast<std::uint64_t>(area);
+    if (!outlines_px.empty()) outlines_px[place] += static_cast<std::uint64_t>(outlines);
     if (scratch.block_count > blocks_at_once) draw_set_up();
   }
   draw_set_up();
   for (std::uint64_t& count : samples) count = samples_of_area(static_cast<std::int64_t>(count));
+  for (std::uint64_t& count : outlines_px) count /= std::uint64_t{outline_units};
 }
 
 void DepthRaster::draw_set_up() {

@@ -54,8 +54,11 @@ class DepthRaster {
   /// conversion. The spans need not outlive the call.
   std::size_t draw(std::span<const RasterDraw> draws);
   /// The same with one thread; samples[i] becomes the number of samples of the image that draw i
-  /// covers, near enough or not (covered_area.h: by area). `samples` is as long as `draws`.
-  void draw_counted(std::span<const RasterDraw> draws, std::span<std::uint64_t> samples);
+  /// covers, near enough or not (covered_area.h: by area), and outlines_px[i] the widths and
+  /// heights of its triangles in sum. `samples` is as long as `draws`, and so is `outlines_px`
+  /// unless empty.
+  void draw_counted(std::span<const RasterDraw> draws, std::span<std::uint64_t> samples,
+                    std::span<std::uint64_t> outlines_px = {});
 
   /// Draws in this order what is not hidden by what was drawn before it, so nearest first is best.
   /// hidden[i] becomes 1 if the vertices of draw i surely cover nothing of the image that would be

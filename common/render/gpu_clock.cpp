@@ -14,7 +14,7 @@ constexpr double triangles_of_a_box = 12.0;
 GpuClock::GpuClock(const GpuModel& model) : model_(model) { check(model); }
 
 void GpuClock::begin_frame() {
-  host_us_ = 0.0;
+  host_us_ = model_.frame_us;
   device_us_ = 0.0;
   state_ = State::drawing;
   log_.clear();
@@ -78,19 +78,24 @@ void GpuClock::draw(std::span<const Work> objects) {
     double device_us = 0.0;
     if (!begun) place = begin(GpuCommandKind::draw, State::drawing, device_us);
     begun = true;
-    host_us_ += model_.draw_us + work.triangles * (model_.host_triangle_ns * us_of_ns);
+    const double shown = work.samples > 0 ? work.triangles : 0.0;
+    host_us_ += model_.draw_us + work.triangles * (model_.host_triangle_ns * us_of_ns) +
+                shown * (model_.host_shown_triangle_ns * us_of_ns);
     GpuCommand& command = log_[place];
     ++command.count;
     command.triangles += work.triangles;
     command.samples += work.samples;
     command.host.end_us = host_us_;
     device_us += model_.device_draw_us + work.triangles * (model_.triangle_ns * us_of_ns) +
+                 shown * (model_.shown_triangle_ns * us_of_ns) +
+                 static_cast<double>(work.outline_px) * (model_.outline_ns * us_of_ns) +
                  static_cast<double>(work.samples) * (model_.pixel_ns * us_of_ns);
     begun = !gather({place, device_us, GpuCommand::none_query});
   }
 }
 
-std::uint32_t GpuClock::query(std::uint32_t boxes, std::uint64_t samples) {
+std::uint32_t GpuClock::query(std::uint32_t boxes, std::uint64_t samples,
+                              std::uint64_t outline_px) {
   double device_us = 0.0;
   const std::size_t place = begin(GpuCommandKind::query, State::asking, device_us);
   const std::uint32_t index = query_count();
@@ -104,6 +109,7 @@ std::uint32_t GpuClock::query(std::uint32_t boxes, std::uint64_t samples) {
   command.host.end_us = host_us_;
   device_us += model_.device_query_us +
                triangles_of_a_box * boxes * (model_.triangle_ns * us_of_ns) +
+               static_cast<double>(outline_px) * (model_.outline_ns * us_of_ns) +
                static_cast<double>(samples) * (model_.pixel_ns * us_of_ns);
   gather({place, device_us, index});
   return index;

@@ -73,11 +73,12 @@ class GpuClock {
   struct Work {
     std::uint32_t triangles = 0;
     std::uint64_t samples = 0;
+    std::uint64_t outline_px = 0;  // widths and heights of its triangles in sum
   };
   /// One call that draws so many objects. Nothing, for none.
   void draw(std::span<const Work> objects);
   /// Returns the query's index in the frame.
-  std::uint32_t query(std::uint32_t boxes, std::uint64_t samples);
+  std::uint32_t query(std::uint32_t boxes, std::uint64_t samples, std::uint64_t outline_px = 0);
   void flush();
   /// True if the answer is there; takes poll_us.
   bool poll(std::uint32_t query);

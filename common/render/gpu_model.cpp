@@ -12,13 +12,19 @@ namespace {
 constexpr double greatest_us = 1e6;
 constexpr double greatest_ns = 1e6;
 
-constexpr std::array<GpuDial, 16> dials = {{
+constexpr std::array<GpuDial, 20> dials = {{
+    {"frame_us", &GpuModel::frame_us, 0.0, greatest_us,
+     "Host time of beginning a frame, in µs: clearing, and what else is set up anew."},
     {"draw_us", &GpuModel::draw_us, 0.0, greatest_us,
      "Host time of one object's draw call, in µs."},
     {"host_triangle_ns", &GpuModel::host_triangle_ns, 0.0, greatest_ns,
      "Host time of a triangle that is drawn, in ns: what a renderer in software does to vertices "
      "on "
      "the calling thread; 0 for a real graphics processor."},
+    {"host_shown_triangle_ns", &GpuModel::host_shown_triangle_ns, 0.0, greatest_ns,
+     "Host time of a triangle of an object that covers samples, beside host_triangle_ns, in ns: "
+     "what "
+     "a renderer in software does to sort it into tiles; 0 for a real graphics processor."},
     {"state_change_us", &GpuModel::state_change_us, 0.0, greatest_us,
      "Host time of going from drawing to asking or back, in µs."},
     {"query_us", &GpuModel::query_us, 0.0, greatest_us,
@@ -33,6 +39,11 @@ constexpr std::array<GpuDial, 16> dials = {{
      "Device time of one object's draw, in µs, beside its triangles and samples."},
     {"triangle_ns", &GpuModel::triangle_ns, 0.0, greatest_ns,
      "Device time of a triangle that is drawn or of a box's twelve, in ns."},
+    {"shown_triangle_ns", &GpuModel::shown_triangle_ns, 0.0, greatest_ns,
+     "Device time of a triangle of an object that covers samples, beside triangle_ns, in ns."},
+    {"outline_ns", &GpuModel::outline_ns, 0.0, greatest_ns,
+     "Device time of a pixel of a triangle's width and height, in ns: blocks of samples that it "
+     "covers in part are worked on as a whole."},
     {"pixel_ns", &GpuModel::pixel_ns, 0.0, greatest_ns,
      "Device time of a sample that is covered, near enough or not, in ns: the reciprocal of the "
      "fill rate."},

@@ -15,8 +15,10 @@ namespace vislab {
 /// Microseconds (_us) and nanoseconds (_ns); meanings and ranges stand in gpu_dials().
 struct GpuModel {
   // Of the host.
+  double frame_us = 0.0;
   double draw_us = 0.0;
   double host_triangle_ns = 0.0;
+  double host_shown_triangle_ns = 0.0;
   double state_change_us = 0.0;
   double query_us = 0.0;
   double box_us = 0.0;
@@ -25,6 +27,8 @@ struct GpuModel {
   // Of the device.
   double device_draw_us = 0.0;
   double triangle_ns = 0.0;
+  double shown_triangle_ns = 0.0;
+  double outline_ns = 0.0;
   double pixel_ns = 0.0;
   double device_query_us = 0.0;
   double device_state_change_us = 0.0;

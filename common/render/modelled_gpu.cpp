@@ -40,7 +40,7 @@ class ModelledGpu::Implementation {
   std::vector<ObjectId> one_sided_;
 
   std::vector<RasterDraw> draws_;
-  std::vector<std::uint64_t> samples_;
+  std::vector<std::uint64_t> samples_, outlines_px_;
   std::vector<GpuClock::Work> work_;
   std::vector<std::uint64_t> answers_;    // of this frame's queries
   std::vector<Aabb> boxes_;               // of this frame's queries, one after the other
@@ -97,9 +97,12 @@ void ModelledGpu::Implementation::draw(std::span<const ObjectId> objects) {
   draws_.clear();
   for (const ObjectId object : objects) add_draw(object, 0, scene_->triangle_count(object));
   samples_.resize(draws_.size());
-  raster_->draw_counted(draws_, samples_);
+  outlines_px_.resize(draws_.size());
+  raster_->draw_counted(draws_, samples_, outlines_px_);
   work_.clear();
-  for (std::size_t i = 0; i < draws_.size(); ++i) work_.push_back({draws_[i].count, samples_[i]});
+  for (std::size_t i = 0; i < draws_.size(); ++i) {
+    work_.push_back({draws_[i].count, samples_[i], outlines_px_[i]});
+  }
   clock.draw(work_);
 }
 
@@ -108,7 +111,8 @@ void ModelledGpu::Implementation::draw(std::span<const TriangleRange> ranges) {
   draws_.clear();
   for (const TriangleRange& range : ranges) add_draw(range.object, range.first, range.count);
   samples_.resize(draws_.size());
-  raster_->draw_counted(draws_, samples_);
+  outlines_px_.resize(draws_.size());
+  raster_->draw_counted(draws_, samples_, outlines_px_);
   work_.clear();
   // Ranges of one object that follow each other are one draw; without triangles there is none.
   for (std::size_t i = 0; i < ranges.size();) {
@@ -117,6 +121,7 @@ void ModelledGpu::Implementation::draw(std::span<const TriangleRange> ranges) {
     for (; i < ranges.size() && ranges[i].object == object; ++i) {
       work.triangles += ranges[i].count;
       work.samples += samples_[i];
+      work.outline_px += outlines_px_[i];
     }
     if (work.triangles > 0) work_.push_back(work);
   }
@@ -139,11 +144,13 @@ QueryId ModelledGpu::Implementation::query(std::span<const Aabb> boxes) {
     const BoxSamples one = count_box_samples(raster_->window(), raster_->tiles(), box);
     sum.covered += one.covered;
     sum.passed += one.passed;
+    sum.outline_px += one.outline_px;
   }
   first_boxes_.push_back(boxes_.size());
   boxes_.insert(boxes_.end(), boxes.begin(), boxes.end());
   answers_.push_back(sum.passed);
-  return {frame_, clock.query(static_cast<std::uint32_t>(boxes.size()), sum.covered)};
+  return {frame_,
+          clock.query(static_cast<std::uint32_t>(boxes.size()), sum.covered, sum.outline_px)};
 }
 
 std::uint32_t ModelledGpu::Implementation::index_of(QueryId query) const {

@@ -13,7 +13,6 @@ namespace {
 
 constexpr int turns = 12;
 constexpr int endless_pipeline = 1'000'000'000;
-constexpr double serial_share = 0.9;  // of a frame's time before its end, if drawing is serial
 
 /// Milliseconds until the work was submitted, and until it was done.
 struct WorkTime {
@@ -67,28 +66,6 @@ bool is_fitted(const GpuDial& dial) {
   return std::holds_alternative<double GpuModel::*>(dial.member) && dial.name != "poll_us";
 }
 
-/// Does drawing go on in the calling thread? Then a flush does not return before it is done.
-bool draws_serially(const FitWorks& works) {
-  OsMesaDevice device;
-  device.load(works.scene());
-  const auto walls = std::ranges::find(works.works(), "walls, far first", &FitWorks::Work::name);
-  using Clock = std::chrono::steady_clock;
-  double share = 0.0;
-  for (int turn = 0; turn < turns; ++turn) {
-    device.begin_frame(works.frame());
-    const auto start = Clock::now();
-    for (const FitWorks::Step& step : walls->steps) {
-      device.draw(std::span<const ObjectId>(step.objects));
-    }
-    device.flush();
-    const auto flushed = Clock::now();
-    device.finish();
-    const std::chrono::duration<double> all = Clock::now() - start;
-    share = std::max(share, std::chrono::duration<double>(flushed - start).count() / all.count());
-  }
-  return share > serial_share;
-}
-
 double poll_us(const FitWorks& works) {
   constexpr int polls = 1000;
   OsMesaDevice device;
@@ -132,12 +109,12 @@ std::vector<double> nonnegative_least_squares(std::span<const std::vector<double
   return x;
 }
 
-DeviceFit fit_device() {
+DeviceFit fit_device(int drawing_threads) {
   const FitWorks works;
   const std::vector<WorkTime> times = measure(works);
   GpuModel base = empty_model();
   const double poll = poll_us(works);
-  base.serial = draws_serially(works);
+  base.serial = drawing_threads == 0;
 
   // A row for the time of each work, and one for its host's part.
   std::vector<std::vector<double>> rows(2 * times.size());
