@@ -32,9 +32,9 @@ struct DeviceFit {
   std::vector<FittedWork> works;
 };
 
-/// Draws with a device of its own, in the process's number of drawing threads: Mesa takes it when
-/// its first context is made (LP_NUM_THREADS). Serial if drawing goes on in the calling thread.
-DeviceFit fit_device();
+/// Draws with a device of its own. `drawing_threads` is what Mesa was told when the process's first
+/// context was made (LP_NUM_THREADS): with none, the calling thread draws, and the model is serial.
+DeviceFit fit_device(int drawing_threads);
 
 /// x >= 0 that makes the sum over rows of (weights[row] · x - 1)² least, with a slight pull towards
 /// small values where that leaves a choice. Each row of `weights` has the same length.

@@ -296,10 +296,11 @@ class BlockRun {
   }
 
   GpuModel fit_of_block() {
-    const auto known = settings_.device_fits.find(device_spec_.drawing_threads(block_.threads));
+    const int threads = device_spec_.drawing_threads(block_.threads);
+    const auto known = settings_.device_fits.find(threads);
     if (known != settings_.device_fits.end()) return known->second;
     progress_.step(block_.title() + ": fitting the modelled device", 0.2);
-    const GpuModel model = fit_device().model;
+    const GpuModel model = fit_device(threads).model;
     watch_.fitted(model);
     return model;
   }
