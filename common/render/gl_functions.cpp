@@ -11,23 +11,6 @@
 namespace vislab {
 namespace {
 
-std::string error_name(GLenum error) {
-  switch (error) {
-    case GL_INVALID_ENUM:
-      return "GL_INVALID_ENUM";
-    case GL_INVALID_VALUE:
-      return "GL_INVALID_VALUE";
-    case GL_INVALID_OPERATION:
-      return "GL_INVALID_OPERATION";
-    case GL_INVALID_FRAMEBUFFER_OPERATION:
-      return "GL_INVALID_FRAMEBUFFER_OPERATION";
-    case GL_OUT_OF_MEMORY:
-      return "GL_OUT_OF_MEMORY";
-    default:
-      return "OpenGL error " + std::to_string(error);
-  }
-}
-
 GLuint compile(const GlFunctions& gl, GLenum stage, const std::string& source) {
   const GLuint shader = gl.CreateShader(stage);
   const char* text = source.c_str();
@@ -45,6 +28,35 @@ GLuint compile(const GlFunctions& gl, GLenum stage, const std::string& source) {
 }
 
 }  // namespace
+
+std::string gl_error_name(GLenum error) {
+  switch (error) {
+    case GL_INVALID_ENUM:
+      return "GL_INVALID_ENUM";
+    case GL_INVALID_VALUE:
+      return "GL_INVALID_VALUE";
+    case GL_INVALID_OPERATION:
+      return "GL_INVALID_OPERATION";
+    case GL_INVALID_FRAMEBUFFER_OPERATION:
+      return "GL_INVALID_FRAMEBUFFER_OPERATION";
+    case GL_CONTEXT_LOST:
+      return "GL_CONTEXT_LOST: the graphics context is gone";
+    case GL_OUT_OF_MEMORY:
+      return "GL_OUT_OF_MEMORY";
+    default:
+      return "OpenGL error " + std::to_string(error);
+  }
+}
+
+void require_queries(const GlFunctions& gl) {
+  GLint bits = 0;
+  gl.GetQueryiv(GL_SAMPLES_PASSED, GL_QUERY_COUNTER_BITS, &bits);
+  if (bits == 0) {
+    throw std::runtime_error(
+        "the graphics device has no occlusion queries (its counters of samples have no bits); Mesa "
+        "22.3 or newer has");
+  }
+}
 
 GlContext::GlContext() {
   const int attributes[] = {OSMESA_FORMAT,
@@ -80,7 +92,7 @@ const GlFunctions& GlContext::make_current() {
   if (OSMesaGetCurrentContext() != context_ &&
       OSMesaMakeCurrent(static_cast<OSMesaContext>(context_), default_target_, GL_UNSIGNED_BYTE, 1,
                         1) == 0) {
-    throw std::runtime_error("OSMesa cannot make its context current");
+    throw std::runtime_error("the graphics context is lost: OSMesa cannot make it current");
   }
   return gl_;
 }
@@ -88,7 +100,7 @@ const GlFunctions& GlContext::make_current() {
 void GlContext::check(const char* where) const {
   const GLenum error = gl_.GetError();
   if (error != GL_NO_ERROR) {
-    throw std::runtime_error(std::string(where) + ": " + error_name(error));
+    throw std::runtime_error(std::string(where) + ": " + gl_error_name(error));
   }
 }
 

@@ -53,6 +53,7 @@ namespace vislab {
   F(GLGETINTEGERV, GetIntegerv)                                   \
   F(GLGETPROGRAMINFOLOG, GetProgramInfoLog)                       \
   F(GLGETPROGRAMIV, GetProgramiv)                                 \
+  F(GLGETQUERYIV, GetQueryiv)                                     \
   F(GLGETQUERYOBJECTUI64V, GetQueryObjectui64v)                   \
   F(GLGETSHADERINFOLOG, GetShaderInfoLog)                         \
   F(GLGETSHADERIV, GetShaderiv)                                   \
@@ -85,6 +86,13 @@ struct GlFunctions {
 #undef VISLAB_GL_MEMBER
 };
 
+/// Throws std::runtime_error if the context cannot count samples: OpenGL allows counters of no
+/// bits, which answer every query with 0, as if everything were hidden.
+void require_queries(const GlFunctions& gl);
+
+/// The name of an error of glGetError.
+std::string gl_error_name(GLenum error);
+
 /// An OpenGL 4.5 core context that draws in memory, and its functions. It is used by one thread at
 /// a time; several contexts may be used in one or in several threads.
 class GlContext {
@@ -96,7 +104,8 @@ class GlContext {
   GlContext& operator=(const GlContext&) = delete;
 
   /// Makes the context current in this thread; does nothing if it is already. Every group of calls
-  /// starts with it, because another context may have been used in between.
+  /// starts with it, because another context may have been used in between. Throws
+  /// std::runtime_error if the context is lost.
   const GlFunctions& make_current();
 
   /// Throws std::runtime_error with the name of the first OpenGL error since the last check.

@@ -1,8 +1,8 @@
 #include "common/render/gpu_model.h"
 
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <sstream>
 
 #include "common/scene/error.h"
 
@@ -19,8 +19,7 @@ constexpr std::array<GpuDial, 20> dials = {{
      "Host time of one object's draw call, in µs."},
     {"host_triangle_ns", &GpuModel::host_triangle_ns, 0.0, greatest_ns,
      "Host time of a triangle that is drawn, in ns: what a renderer in software does to vertices "
-     "on "
-     "the calling thread; 0 for a real graphics processor."},
+     "on the calling thread; 0 for a real graphics processor."},
     {"host_shown_triangle_ns", &GpuModel::host_shown_triangle_ns, 0.0, greatest_ns,
      "Host time of a triangle of an object that covers samples, beside host_triangle_ns, in ns: "
      "what "
@@ -129,16 +128,12 @@ std::string names(auto&& named) {
   return list;
 }
 
-/// The shortest that reads back as the same.
+/// The shortest that reads back as the same, without an exponent.
 std::string number(double value) {
-  for (int digits = 1; digits <= 17; ++digits) {
-    std::ostringstream text;
-    text.imbue(std::locale::classic());
-    text.precision(digits);
-    text << value;
-    if (std::stod(text.str()) == value || digits == 17) return text.str();
-  }
-  return {};
+  std::array<char, 400> text;
+  const auto [end, error] =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed);
+  return {text.data(), end};
 }
 
 }  // namespace

@@ -116,6 +116,7 @@ class OsMesaDevice::Implementation {
 
 OsMesaDevice::Implementation::Implementation() {
   const GlFunctions& gl = context_.make_current();
+  require_queries(gl);
   gl.CreateFramebuffers(1, &framebuffer_);
   make_programs();
   make_box_array(gl);
@@ -132,14 +133,18 @@ OsMesaDevice::Implementation::Implementation() {
 }
 
 OsMesaDevice::Implementation::~Implementation() {
-  const GlFunctions& gl = context_.make_current();
-  gl.DeleteQueries(static_cast<GLsizei>(query_names_.size()), query_names_.data());
-  gl.DeleteRenderbuffers(2, renderbuffers_.data());
-  gl.DeleteFramebuffers(1, &framebuffer_);
-  gl.DeleteVertexArrays(1, &box_array_);
-  for (const GLuint program : programs_) gl.DeleteProgram(program);
-  gl.DeleteBuffers(1, &box_corners_);
-  gl.DeleteBuffers(1, &box_elements_);
+  try {
+    const GlFunctions& gl = context_.make_current();
+    gl.DeleteQueries(static_cast<GLsizei>(query_names_.size()), query_names_.data());
+    gl.DeleteRenderbuffers(2, renderbuffers_.data());
+    gl.DeleteFramebuffers(1, &framebuffer_);
+    gl.DeleteVertexArrays(1, &box_array_);
+    for (const GLuint program : programs_) gl.DeleteProgram(program);
+    gl.DeleteBuffers(1, &box_corners_);
+    gl.DeleteBuffers(1, &box_elements_);
+  } catch (const std::runtime_error&) {
+    // A context that is lost has taken all that with it.
+  }
 }
 
 void OsMesaDevice::Implementation::make_programs() {

@@ -18,7 +18,9 @@ namespace vislab {
 /// that the float depth buffer itself is the limit: its step at distance z is z * z * 6e-8 / near).
 ///
 /// Errors: InputError for a viewport that is empty or larger than the device's limit;
-/// std::logic_error for calls in a wrong order; std::runtime_error if OpenGL reports an error.
+/// std::logic_error for calls in a wrong order; std::runtime_error if OpenGL reports an error
+/// (looked for after every batch of draws, query, flush and answer), the context is lost, or has no
+/// queries.
 class OsMesaDevice : public RenderDevice {
  public:
   OsMesaDevice();
