@@ -69,8 +69,9 @@ class CommandLine {
   }
 
   void add_list() {
-    CLI::App* const sub = verb("list", "what there is: cullers, scenes, matrices, metrics or devices",
-                               [this] { return list(lab_, name_, json_); });
+    CLI::App* const sub =
+        verb("list", "what there is: cullers, scenes, matrices, metrics or devices",
+             [this] { return list(lab_, name_, json_); });
     sub->add_option("what", name_, "cullers, scenes, matrices, metrics or devices")
         ->default_val("cullers");
     add_json(sub);
@@ -138,13 +139,25 @@ class CommandLine {
     CLI::App* const sub = verb(
         "show", "a picture of a frame: a culler's choice, or how much lies one behind the other",
         [this] {
-          if (show_.culler.empty() == show_.depth_complexity.empty()) {
+          if (show_.cullers.empty() == show_.depth_complexity.empty()) {
             throw InputError("show takes either --culler or --depth-complexity");
           }
-          return show_.culler.empty() ? show_depth_complexity(lab_, show_, json_)
-                                      : show(lab_, show_);
+          if (show_.cullers.empty()) return show_depth_complexity(lab_, show_, json_);
+          if (!show_.queries.empty()) return show_queries(lab_, show_);
+          if (show_.cullers.size() > 1) {
+            throw InputError("show takes one --culler, or several with --queries");
+          }
+          return show(lab_, show_);
         });
-    sub->add_option("--culler", show_.culler, "seen from the eye and from outside");
+    CLI::Option* const culler =
+        sub->add_option("--culler", show_.cullers,
+                        "seen from the eye and from outside; with --queries as often as wanted")
+            ->allow_extra_args(false);
+    sub->add_option("--queries", show_.queries,
+                    "what the cullers ask the device: strip (state changes), boxes or timeline "
+                    "(on a modelled device)")
+        ->needs(culler);
+    sub->add_option("--draw", show_.draw, "with --queries: a device, as run takes it");
     sub->add_option("--depth-complexity", show_.depth_complexity,
                     "a heat map of rays, polygons or transparent, and the figures of all three");
     sub->add_option("--scene", show_.scene)->required();

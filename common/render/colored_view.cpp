@@ -41,7 +41,8 @@ Layer seen(const Scene& scene, const Frame& frame, std::span<const ObjectId> obj
   return {device.read_ids(), device.read_depth()};
 }
 
-/// How much light a triangle gets that comes from the eye, from 0.55 to 1.
+/// How much light a triangle gets that comes from the eye. Little is taken away, for colours are to
+/// be told apart.
 double shade_of(const Camera& camera, const Mesh& mesh, const glm::dmat4x3& transform,
                 std::uint32_t triangle) {
   const auto corners = world_triangle(mesh, transform, triangle);
@@ -51,7 +52,7 @@ double shade_of(const Camera& camera, const Mesh& mesh, const glm::dmat4x3& tran
                                : camera.pose.eye - corners[0];
   const double lengths = glm::length(normal) * glm::length(light);
   const double facing = lengths > 0.0 ? std::abs(glm::dot(normal, light)) / lengths : 0.0;
-  return 0.55 + 0.45 * facing;
+  return 0.7 + 0.3 * facing;
 }
 
 Color shaded(const Color& color, double share) {

@@ -28,15 +28,21 @@ struct Rectangle {
 };
 
 /// The boxes of queries that found nothing to be seen, in their colours.
-std::vector<ColoredBox> hidden_boxes(const QueryBoxesRow& row) {
-  std::vector<ColoredBox> boxes;
+struct HiddenBoxes {
+  std::vector<ColoredBox> together, alone;
+};
+
+HiddenBoxes hidden_boxes(const QueryBoxesRow& row) {
+  HiddenBoxes boxes;
   std::size_t several = 0;
   for (const BoxesOfQuery& query : row.queries) {
-    const bool alone = query.boxes.size() < 2;
-    const Color color = alone ? alone_color : cycled_color(several);
-    if (!alone) ++several;
+    const bool is_alone = query.boxes.size() < 2;
+    const Color color = is_alone ? alone_color : cycled_color(several);
+    if (!is_alone) ++several;
     if (query.samples != 0U) continue;
-    for (const Aabb& box : query.boxes) boxes.push_back({box, color});
+    for (const Aabb& box : query.boxes) {
+      (is_alone ? boxes.alone : boxes.together).push_back({box, color});
+    }
   }
   return boxes;
 }
@@ -64,6 +70,7 @@ std::string note_of(const QueryBoxesRow& row) {
 
 void draw_outline(Canvas& canvas, const Camera& camera, const Viewport& viewport,
                   const Rectangle& place, const ColoredBox& box) {
+  if (!box.box.valid()) return;
   const auto corner = [&](int i) {
     return glm::dvec3((i & 1) != 0 ? box.box.max.x : box.box.min.x,
                       (i & 2) != 0 ? box.box.max.y : box.box.min.y,
@@ -82,22 +89,35 @@ void draw_outline(Canvas& canvas, const Camera& camera, const Viewport& viewport
   }
 }
 
-void draw_from_outside(Canvas& canvas, const QueryBoxesInput& input, std::span<const Color> colors,
-                       std::span<const ColoredBox> boxes, const Rectangle& place) {
+/// Whoever was drawn counts as seen, so that the view holds it.
+OutsideView view_of(const QueryBoxesInput& input, const QueryBoxesRow& row, double aspect) {
+  std::vector<TriangleClass> classes(input.scene->triangle_count(), TriangleClass::culled_rightly);
+  for (ObjectId object = 0; object < row.is_drawn.size(); ++object) {
+    if (row.is_drawn[object] == 0) continue;
+    std::fill_n(classes.begin() + input.scene->first_triangle(object),
+                input.scene->triangle_count(object), TriangleClass::kept_visible);
+  }
   PictureInput fitted;
   fitted.scene = input.scene;
   fitted.frame = input.frame;
-  const std::vector<TriangleClass> classes(input.scene->triangle_count(),
-                                           TriangleClass::kept_visible);
   fitted.classes = classes;
-  const OutsideView outside = fit_outside_view(fitted, place.width / place.height);
+  return fit_outside_view(fitted, aspect);
+}
+
+void draw_from_outside(Canvas& canvas, const QueryBoxesInput& input, const QueryBoxesRow& row,
+                       std::span<const Color> colors, const HiddenBoxes& boxes,
+                       const Rectangle& place) {
+  const OutsideView outside = view_of(input, row, place.width / place.height);
   Frame frame = *input.frame;
   frame.camera = outside.camera;
   frame.viewport = {static_cast<int>(place.width), static_cast<int>(place.height)};
-  const Image image = draw_colored(*input.scene, frame, colors, boxes, true);
+  const Image image = draw_colored(*input.scene, frame, colors, boxes.together, true);
   canvas.picture(image, {0, 0}, {image.width, image.height}, place.left, place.top, place.width,
                  place.height);
   canvas.clip(place.left, place.top, place.width, place.height);
+  for (const ColoredBox& box : boxes.alone) {
+    draw_outline(canvas, outside.camera, frame.viewport, place, box);
+  }
   const glm::dvec2 origin(place.left, place.top);
   WindowLine line{};
   for (const auto& [from, to] : frustum_edges(input.frame->camera, outside.frustum_depth)) {
@@ -118,16 +138,18 @@ void draw_row(Canvas& canvas, const QueryBoxesInput& input, const QueryBoxesRow&
   for (ObjectId object = 0; object < colors.size(); ++object) {
     if (row.is_drawn[object] != 0) colors[object] = drawn_color;
   }
-  const std::vector<ColoredBox> boxes = hidden_boxes(row);
+  const HiddenBoxes boxes = hidden_boxes(row);
   const Image eye = draw_colored(*input.scene, *input.frame, colors, {}, false);
   canvas.picture(eye, {0, 0}, {eye.width, eye.height}, eye_place.left, eye_place.top,
                  eye_place.width, eye_place.height);
   canvas.clip(eye_place.left, eye_place.top, eye_place.width, eye_place.height);
-  for (const ColoredBox& box : boxes) {
-    draw_outline(canvas, input.frame->camera, input.frame->viewport, eye_place, box);
+  for (const auto* some : {&boxes.alone, &boxes.together}) {
+    for (const ColoredBox& box : *some) {
+      draw_outline(canvas, input.frame->camera, input.frame->viewport, eye_place, box);
+    }
   }
   canvas.unclip();
-  draw_from_outside(canvas, input, colors, boxes, outside_place);
+  draw_from_outside(canvas, input, row, colors, boxes, outside_place);
 }
 
 }  // namespace

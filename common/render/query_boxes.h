@@ -32,8 +32,8 @@ struct QueryBoxesInput {
 /// A row a culler. Left: the frame as it was drawn, in grey, with the outlines of the boxes of
 /// queries that found nothing to be seen. Right: the same from outside, where these boxes stand
 /// where nothing was drawn. Queries of several boxes have a colour each, as far as colours go;
-/// boxes asked about alone are white. Throws std::logic_error if the input does not fit together,
-/// InputError for a viewport that cannot be drawn. O(rows * (triangles + boxes)).
+/// boxes asked about alone are white outlines. Throws std::logic_error if the input does not fit
+/// together, InputError for a viewport that cannot be drawn. O(rows * (triangles + boxes)).
 Image render_query_boxes(const QueryBoxesInput& input);
 
 }  // namespace vislab

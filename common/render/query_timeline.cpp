@@ -18,11 +18,13 @@ constexpr double margin = 16.0;
 constexpr double lane_left = 110.0;
 constexpr double lane_width = 980.0;
 constexpr double picture_width = lane_left + lane_width + 3.0 * margin;
-constexpr double title_height = 62.0;
+constexpr double title_height = 40.0;
 constexpr double heading_height = 48.0;
 constexpr double lane_height = 34.0, lane_gap = 8.0, tick_height = 8.0;
-constexpr double row_height = heading_height + tick_height + 2.0 * lane_height + lane_gap + margin;
-constexpr double axis_height = 54.0;
+constexpr double axis_height = 26.0;
+constexpr double row_height =
+    heading_height + tick_height + 2.0 * lane_height + lane_gap + axis_height + margin;
+constexpr double foot_height = 28.0;
 constexpr double legend_height = 34.0;
 
 /// Blue, orange, black, green and purple of Okabe and Ito (2008).
@@ -73,9 +75,11 @@ std::string tick_text(double value, double step) {
 
 class Timeline {
  public:
-  Timeline(Canvas& canvas, double span_us) : canvas_(canvas), span_us_(span_us) {}
+  explicit Timeline(Canvas& canvas) : canvas_(canvas) {}
 
-  void row(const TimelineRow& row, const TimelineFigures& figures, double top) {
+  void row(const TimelineRow& row, double top) {
+    const TimelineFigures figures = figures_of(row.commands);
+    span_us_ = std::max(figures.frame_us, 1e-3);
     canvas_.text(margin, top + 17.0, picture_width - 2.0 * margin, 15.0, true, row.name);
     canvas_.text(margin, top + 37.0, picture_width - 2.0 * margin, 14.0, false, note(figures));
     const double host = top + heading_height + tick_height;
@@ -94,18 +98,7 @@ class Timeline {
       canvas_.fill(at(command.host.begin_us) - 0.5, host - tick_height, 1.0, tick_height - 2.0,
                    black);
     }
-  }
-
-  void axis(double bottom) {
-    const double step = step_for(1e-3 * span_us_);
-    for (int i = 0; step * i <= 1e-3 * span_us_ * 1.0001; ++i) {
-      const double x = at(1e3 * step * i);
-      canvas_.fill(x - 0.5, bottom, 1.0, 6.0, black);
-      canvas_.text(x - 8.0, bottom + 20.0, 60.0, 13.0, false, tick_text(step * i, step));
-    }
-    canvas_.fill(lane_left, bottom, lane_width, 1.0, black);
-    canvas_.text(lane_left + 0.5 * lane_width - 110.0, bottom + 42.0, 320.0, 14.0, false,
-                 "ms since the frame began");
+    axis(device + lane_height + 2.0);
   }
 
   void legend(double top) {
@@ -129,6 +122,16 @@ class Timeline {
            std::to_string(figures.boxes) + " boxes, " + std::to_string(figures.state_changes) +
            " changes between drawing and asking";
   }
+  void axis(double top) {
+    const double step = step_for(1e-3 * span_us_);
+    canvas_.fill(lane_left, top, lane_width, 1.0, black);
+    for (int i = 0; step * i <= 1e-3 * span_us_ * 1.0001; ++i) {
+      const double x = at(1e3 * step * i);
+      const std::string tick = tick_text(step * i, step) + (i == 0 ? " ms" : "");
+      canvas_.fill(x - 0.5, top, 1.0, 6.0, black);
+      canvas_.text(x - (i == 0 ? 4.0 : 8.0), top + 20.0, 60.0, 13.0, false, tick);
+    }
+  }
   double at(double time_us) const { return lane_left + lane_width * time_us / span_us_; }
   void bar(const GpuInterval& interval, GpuCommandKind kind, double top) {
     if (interval.end_us <= interval.begin_us) return;
@@ -137,7 +140,7 @@ class Timeline {
   }
 
   Canvas& canvas_;
-  double span_us_;
+  double span_us_ = 1.0;  // of the row
 };
 
 }  // namespace
@@ -165,23 +168,17 @@ TimelineFigures figures_of(const std::vector<GpuCommand>& commands) {
 
 Image render_query_timeline(const TimelineInput& input) {
   if (input.rows.empty()) throw std::logic_error("render_query_timeline: a row is needed");
-  std::vector<TimelineFigures> figures;
-  double span_us = 1e-3;
-  for (const TimelineRow& row : input.rows) {
-    figures.push_back(figures_of(row.commands));
-    span_us = std::max(span_us, figures.back().frame_us);
-  }
   const double bottom = title_height + row_height * static_cast<double>(input.rows.size());
   Canvas canvas(static_cast<int>(picture_width),
-                static_cast<int>(bottom + axis_height + legend_height), paper);
+                static_cast<int>(bottom + foot_height + legend_height), paper);
   canvas.text(margin, 28.0, picture_width - 2.0 * margin, 19.0, true, input.title);
-  canvas.text(margin, 50.0, picture_width - 2.0 * margin, 14.0, false, input.note);
-  Timeline timeline(canvas, span_us);
+  Timeline timeline(canvas);
   for (std::size_t i = 0; i < input.rows.size(); ++i) {
-    timeline.row(input.rows[i], figures[i], title_height + row_height * static_cast<double>(i));
+    timeline.row(input.rows[i], title_height + row_height * static_cast<double>(i));
   }
-  timeline.axis(bottom);
-  timeline.legend(bottom + axis_height);
+  canvas.text(lane_left, bottom + 8.0, lane_width, 14.0, false,
+              "ms since the frame began, each method to its own scale");
+  timeline.legend(bottom + foot_height);
   return canvas.image();
 }
 

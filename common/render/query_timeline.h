@@ -15,8 +15,7 @@ struct TimelineRow {
 };
 
 struct TimelineInput {
-  std::string title;
-  std::string note;  // what the device is
+  std::string title;  // with the device
   std::vector<TimelineRow> rows;
 };
 
@@ -29,7 +28,7 @@ struct TimelineFigures {
 };
 TimelineFigures figures_of(const std::vector<GpuCommand>& commands);
 
-/// Two lanes a row, processor above device, all rows to the same scale of milliseconds. Throws
+/// Two lanes a row, processor above device, each row over its own milliseconds. Throws
 /// std::logic_error without a row. O(commands).
 Image render_query_timeline(const TimelineInput& input);
 

@@ -21,7 +21,7 @@ std::size_t require_frame(const Path& path, int frame) {
 }
 
 int show(const Lab& lab, const ShowCall& call) {
-  const std::unique_ptr<ICuller> culler = lab.cullers.make(call.culler);
+  const std::unique_ptr<ICuller> culler = lab.cullers.make(call.cullers.front());
   const Viewport viewport = parse_resolution(call.resolution);
   const LoadedScene loaded = load_scene(call.scene, lab.data);
   const Scene& scene = loaded.scene;
@@ -57,17 +57,17 @@ int show(const Lab& lab, const ShowCall& call) {
   const Verdict verdict = judge_set(frame, truth.frame(last), run.sets[last], granularity, caster);
   if (!run.surfaces[last].empty()) {
     write_surface_picture(scene, frame, truth.frame(last),
-                          {{lab.cullers.short_name(call.culler), run.surfaces[last]}},
+                          {{lab.cullers.short_name(call.cullers.front()), run.surfaces[last]}},
                           scene.name + ", frame " + std::to_string(last) +
                               ": who owns each pixel; wrong ones in vermillion",
                           call.output);
     std::cerr << "wrote " << call.output.string() << '\n';
     return 0;
   }
-  write_frame_picture(
-      scene, frame, truth.frame(last), run.sets[last], verdict, granularity,
-      scene.name + ", " + lab.cullers.short_name(call.culler) + ", frame " + std::to_string(last),
-      call.output);
+  write_frame_picture(scene, frame, truth.frame(last), run.sets[last], verdict, granularity,
+                      scene.name + ", " + lab.cullers.short_name(call.cullers.front()) +
+                          ", frame " + std::to_string(last),
+                      call.output);
   std::cerr << "wrote " << call.output.string() << '\n';
   return 0;
 }

@@ -35,7 +35,7 @@ struct RunCall {
   int frames = 0;  // 0 = as many as the path has
   int rounds = 5;
   std::string draw = "osmesa";  // a device, as parse_device takes it
-  int threads = 0;  // 0 = as the matrix says, or all cores
+  int threads = 0;              // 0 = as the matrix says, or all cores
   std::string filter;
   std::filesystem::path results;
   std::string shard;  // "i/n"
@@ -45,15 +45,20 @@ int plan(const Lab& lab, const RunCall& call);
 int run(const Lab& lab, const RunCall& call);
 
 struct ShowCall {
-  std::string culler, scene, path;
+  std::vector<std::string> cullers;  // one, or several for a picture of queries
+  std::string scene, path;
   std::string resolution = "512x512";
   int frame = 0;
   std::filesystem::path output;
   std::string depth_complexity;  // instead of a culler: rays, polygons or transparent
+  std::string queries;           // with cullers: strip, boxes or timeline
+  std::string draw;              // with queries: a device; empty: one that suits the picture
 };
 int show(const Lab& lab, const ShowCall& call);
 /// A heat map of a frame by that definition of depth complexity; prints the figures of all.
 int show_depth_complexity(const Lab& lab, const ShowCall& call, bool json);
+/// A picture of what cullers ask the device in a frame.
+int show_queries(const Lab& lab, const ShowCall& call);
 /// The index of a frame. Throws InputError if the path has no such frame.
 std::size_t require_frame(const Path& path, int frame);
 

@@ -186,10 +186,10 @@ TEST_F(QueryPictures, TheTimeLineAddsUpWhatBothClocksDid) {
 }
 
 TEST_F(QueryPictures, TheTimeLineShowsWhatBothDoWhen) {
-  const Image image = render_query_timeline({"title", "note", {{"some.culler", a_frame()}}});
-  // Lanes are 980 wide from x = 110 on; the processor's from y = 118, the device's from y = 160.
-  const auto host = [&](int percent) { return pixel(image, 110 + 980 * percent / 100, 130); };
-  const auto device = [&](int percent) { return pixel(image, 110 + 980 * percent / 100, 175); };
+  const Image image = render_query_timeline({"title", {{"some.culler", a_frame()}}});
+  // Lanes are 980 wide from x = 110 on; the processor's from y = 96, the device's from y = 138.
+  const auto host = [&](int percent) { return pixel(image, 110 + 980 * percent / 100, 110); };
+  const auto device = [&](int percent) { return pixel(image, 110 + 980 * percent / 100, 155); };
   const Color draws = {0, 114, 178};
   const Color queries = {230, 159, 0};
   const Color waits = {204, 121, 167};

@@ -1,0 +1,96 @@
+#include <cstdlib>
+#include <iostream>
+
+#include "common/render/modelled_gpu.h"
+#include "common/scene/error.h"
+#include "experiments/devices/device_spec.h"
+#include "experiments/matrix/resolution.h"
+#include "experiments/run/path_run.h"
+#include "experiments/show/query_pictures.h"
+#include "experiments/verbs/verbs.h"
+
+namespace vislab {
+namespace {
+
+QueryPicture picture_of(const std::string& name) {
+  std::vector<std::string> known;
+  for (const QueryPicture picture : query_pictures) {
+    if (name == to_string(picture)) return picture;
+    known.emplace_back(to_string(picture));
+  }
+  throw unknown_name("picture of queries", name, known);
+}
+
+/// Runs a culler over the whole path, for it may live on what it saw before, and keeps what it had
+/// the device do in the last frame.
+RecordedFrame record(const Lab& lab, const std::string& name, const Scene& scene, const Path& path,
+                     const Viewport& viewport, RenderDevice& device, SceneState& state) {
+  const std::unique_ptr<ICuller> culler = lab.cullers.make(name);
+  if (!culler->info().needs_device) {
+    throw InputError(lab.cullers.short_name(name) +
+                     " never asks a device; a picture of queries needs a culler that does, such "
+                     "as occlusion.stop_and_wait");
+  }
+  device.load(scene);
+  RecordedDevice recorded(device);
+  TimedDevice timed(recorded);
+  BuildContext context;
+  context.cullers = &lab.cullers;
+  context.device = &timed;
+  culler->build(scene, context);
+  run_path(*culler, scene, path, viewport, 1, state, &timed);
+  RecordedFrame frame{lab.cullers.short_name(name), recorded.states(), recorded.flushes(), {}};
+  if (const auto* modelled = dynamic_cast<const ModelledGpu*>(&device)) {
+    frame.commands = modelled->log();
+  }
+  return frame;
+}
+
+DeviceSpec device_of(const ShowCall& call, QueryPicture picture) {
+  const char* const usual = picture == QueryPicture::timeline ? "modelled[preset=gpu]" : "osmesa";
+  DeviceSpec spec = parse_device(call.draw.empty() ? usual : call.draw);
+  if (spec.kind == DeviceSpec::Kind::none) {
+    throw InputError("--draw none: a picture of queries needs a device to ask");
+  }
+  if (picture == QueryPicture::timeline && spec.kind != DeviceSpec::Kind::modelled) {
+    throw InputError("--draw " + spec.text +
+                     ": a time line needs a modelled device, whose clock can be read, such as "
+                     "modelled[preset=gpu]");
+  }
+  return spec;
+}
+
+}  // namespace
+
+int show_queries(const Lab& lab, const ShowCall& call) {
+  const QueryPicture picture = picture_of(call.queries);
+  const DeviceSpec spec = device_of(call, picture);
+  // Mesa reads this when its first context is made.
+  if (spec.synchronous) ::setenv("LP_NUM_THREADS", "0", 1);
+  const Viewport viewport = parse_resolution(call.resolution);
+  const LoadedScene loaded = load_scene(call.scene, lab.data);
+  const Scene& scene = loaded.scene;
+  Path path =
+      load_path(call.path.empty() ? loaded.default_path : call.path, scene, viewport, 0, lab.data);
+  const std::size_t last = require_frame(path, call.frame);
+  path.frames.resize(last + 1);
+  SceneState state(scene);
+  std::vector<RecordedFrame> rows;
+  const GpuModel model = spec.preset.empty() ? GpuModel{} : gpu_preset(spec.preset).model;
+  for (const std::string& name : call.cullers) {
+    const std::unique_ptr<RenderDevice> device = make_device(spec, model);
+    rows.push_back(record(lab, name, scene, path, viewport, *device, state));
+  }
+  Frame frame;
+  frame.index = last;
+  frame.camera = path.frames[last].camera;
+  frame.viewport = viewport;
+  frame.objects = state.view();
+  write_query_picture(picture, scene, frame,
+                      scene.name + ", " + path.name + ", frame " + std::to_string(last), spec.text,
+                      rows, call.output);
+  std::cerr << "wrote " << call.output.string() << '\n';
+  return 0;
+}
+
+}  // namespace vislab
