@@ -6,8 +6,8 @@
 //   box adds no sample to the image is hidden by what is drawn, or outside the image.
 // Guarantee: image_exact (threshold_px = 0): the box that is asked about is grown until it covers
 //   every pixel and every depth that the object's own triangles can get on the device, and a box
-//   that may be cut by the near plane is drawn unasked. threshold_px > 0 leaves out objects that
-//   show no more than that many pixels: approximate.
+//   that may be cut by the near plane is drawn unasked. threshold_px > 0 leaves out objects whose
+//   boxes show no more than that many pixels: approximate.
 // Cost: O(n log n) to sort, one query and one wait a candidate: the device idles while the
 //   processor waits, and the processor while the device draws.
 // Limits: slow, as a yardstick for methods that hide the waiting; an object outside the image costs
@@ -18,13 +18,13 @@
 
 #include <algorithm>
 
+#include "algorithms/occlusion/object_list.h"
 #include "common/culler/registry.h"
-#include "common/geometry/frustum.h"
-#include "common/render/query_bounds.h"
-#include "common/scene/error.h"
 
 namespace vislab {
 namespace {
+
+using namespace occlusion_culling;
 
 CullerInfo describe() {
   CullerInfo info;
@@ -53,17 +53,6 @@ CullerInfo describe() {
   return info;
 }
 
-/// Orders boxes front to back: squared distance from the eye, or depth for an orthographic camera.
-/// Broken boxes, which are drawn unasked, come at 0: NaN would have no place in an order.
-double nearness(const Camera& camera, const Aabb& box) {
-  if (!box.valid()) return 0.0;
-  if (camera.lens.projection == Projection::perspective) {
-    return distance_squared(box, camera.pose.eye);
-  }
-  const glm::dvec3 reach = glm::abs(camera.pose.back) * box.half_size();
-  return camera.planar_depth(box.center()) - (reach.x + reach.y + reach.z);
-}
-
 class StopAndWait : public ICuller {
  public:
   explicit StopAndWait(std::uint64_t threshold_px) : threshold_px_(threshold_px) {
@@ -73,35 +62,29 @@ class StopAndWait : public ICuller {
   const CullerInfo& info() const override { return info_; }
 
   void build(const Scene& scene, const BuildContext& context) override {
-    if (context.device == nullptr) {
-      throw InputError(
-          "occlusion.stop_and_wait: there is no graphics device to ask; it needs a run that draws");
-    }
-    device_ = context.device;
+    device_ = &required_device(info_.name, context);
     order_.reserve(scene.object_count());
     kept_.reserve(scene.object_count());
   }
 
   void cull(const Frame& frame, const Candidates& candidates, DrawSink& out) override {
+    view_.start(frame);
     order_.clear();
     for_each_object_run(candidates, frame, [&](std::span<const ObjectId> run) {
       for (const ObjectId object : run) {
-        order_.push_back({nearness(frame.camera, frame.objects.bounds[object]), object});
+        order_.push_back({view_.nearness(frame.objects.bounds[object]), object});
       }
     });
     std::ranges::sort(order_);
 
     kept_.clear();
-    drawn_ = 0;
     for (const Place& place : order_) {
-      if (shows(frame, frame.objects.bounds[place.object], out)) kept_.push_back(place.object);
+      if (shows(frame.objects.bounds[place.object], out)) kept_.add(place.object);
     }
-    hand_over(out);
+    kept_.emit(out);
   }
 
-  std::size_t bytes() const override {
-    return order_.capacity() * sizeof(Place) + kept_.capacity() * sizeof(ObjectId);
-  }
+  std::size_t bytes() const override { return order_.capacity() * sizeof(Place) + kept_.bytes(); }
   Counters counters() const override { return {{"queries", queries_}, {"occluded", occluded_}}; }
 
  private:
@@ -111,10 +94,10 @@ class StopAndWait : public ICuller {
     auto operator<=>(const Place&) const = default;
   };
 
-  bool shows(const Frame& frame, const Aabb& box, DrawSink& out) {
-    const Aabb asked = enlarged_for_query(frame.camera, frame.viewport, box);
-    if (touches_near_region(frame.camera, asked)) return true;
-    if (hand_over(out)) out.flush();
+  bool shows(const Aabb& box, DrawSink& out) {
+    Aabb asked;
+    if (view_.place_inside(box, asked) == BoxPlace::unaskable) return true;
+    kept_.draw(out);
     const QueryId query = device_->query({&asked, 1});
     device_->flush();
     ++queries_;
@@ -123,20 +106,12 @@ class StopAndWait : public ICuller {
     return visible;
   }
 
-  /// Emits what was kept since the last time. False if there is nothing.
-  bool hand_over(DrawSink& out) {
-    if (drawn_ == kept_.size()) return false;
-    out.objects(std::span<const ObjectId>(kept_).subspan(drawn_));
-    drawn_ = kept_.size();
-    return true;
-  }
-
   std::uint64_t threshold_px_;
   CullerInfo info_;
   RenderDevice* device_ = nullptr;
+  BoxView view_;
   std::vector<Place> order_;
-  std::vector<ObjectId> kept_;
-  std::size_t drawn_ = 0;  // of kept_, already emitted
+  KeptObjects kept_;
   std::uint64_t queries_ = 0;
   std::uint64_t occluded_ = 0;
 };
