@@ -11,6 +11,7 @@
 #include "common/scene/error.h"
 #include "report/chart.h"
 #include "report/method_fields.h"
+#include "report/persistence_section.h"
 #include "report/process.h"
 #include "report/sections.h"
 #include "report/sweep_chart.h"
@@ -25,11 +26,12 @@ const Program gnuplot{"gnuplot", "gnuplot-nox"};
 const Program pandoc{"pandoc", "pandoc"};
 const Program chromium{"chromium", "chromium"};
 constexpr std::chrono::seconds time_limit{60};
+constexpr const char* persistence_file = "persistence.json";
 
 /// The report's parts in their order; each is templates/NAME.md.
-constexpr const char* parts[] = {"front",    "floor",     "depth",    "guide",
-                                 "scenes",   "published", "surfaces", "sweeps",
-                                 "controls", "methods",   "metrics",  "measurement"};
+constexpr const char* parts[] = {"front",   "floor",     "depth",      "persistence", "guide",
+                                 "scenes",  "published", "surfaces",   "sweeps",      "controls",
+                                 "methods", "metrics",   "measurement"};
 
 /// A folder for work in progress, gone with this object.
 class WorkFolder {
@@ -67,7 +69,8 @@ void write_text(const fs::path& file, const std::string& text) {
   if (!stream) throw InputError(file.string() + " cannot be written");
 }
 
-void draw_charts(const ReportInput& input, const fs::path& work) {
+void draw_charts(const ReportInput& input, const std::vector<PersistenceRow>& persistence,
+                 const fs::path& work) {
   std::string script;
   for (std::size_t i = 0; i < input.blocks.size(); ++i) {
     if (charted_cells(input.blocks[i]).empty()) continue;
@@ -77,14 +80,19 @@ void draw_charts(const ReportInput& input, const fs::path& work) {
     if (!has_sweep_chart(input.sweeps[i])) continue;
     script += sweep_chart_script(input.sweeps[i], sweep_chart_file_name(i));
   }
+  if (!persistence.empty()) {
+    script += persistence_chart_script(persistence, persistence_chart_file);
+  }
   if (script.empty()) return;
   write_text(work / "charts.gnuplot", script);
   run_program(gnuplot, {"charts.gnuplot"}, work, time_limit);
 }
 
-void write_words(const ReportInput& input, const fs::path& templates, const fs::path& work) {
+void write_words(const ReportInput& input, const std::vector<PersistenceRow>& persistence,
+                 const fs::path& templates, const fs::path& work) {
   const fs::path folder = templates / "templates";
   Fields fields = report_fields(input, read_template(folder / "verdict.md"), work);
+  add_persistence_fields(persistence, fields);
   cite_sources(read_template(templates / "bibliography.bib"), fields.lists["methods"]);
   std::string text;
   for (const std::string part : parts) {
@@ -122,7 +130,7 @@ void print_page(const fs::path& work) {
   }
 }
 
-/// Copies both files beside their final names before either is renamed.
+/// Copies the files beside their final names before any is renamed.
 void publish(const fs::path& work, const fs::path& folder) {
   std::error_code code;
   fs::create_directories(folder, code);
@@ -131,13 +139,15 @@ void publish(const fs::path& work, const fs::path& folder) {
                       "; name another folder with -o");
   };
   if (code) throw unwritable();
-  for (const char* name : {"index.html", "report.pdf"}) {
-    fs::copy_file(work / name, folder / (std::string(name) + ".tmp"),
-                  fs::copy_options::overwrite_existing, code);
+  std::vector<std::string> names{"index.html", "report.pdf"};
+  if (fs::exists(work / persistence_file)) names.emplace_back(persistence_file);
+  for (const std::string& name : names) {
+    fs::copy_file(work / name, folder / (name + ".tmp"), fs::copy_options::overwrite_existing,
+                  code);
     if (code) throw unwritable();
   }
-  for (const char* name : {"index.html", "report.pdf"}) {
-    fs::rename(folder / (std::string(name) + ".tmp"), folder / name, code);
+  for (const std::string& name : names) {
+    fs::rename(folder / (name + ".tmp"), folder / name, code);
     if (code) throw unwritable();
   }
 }
@@ -152,8 +162,10 @@ void write_report(const ReportInput& input, const fs::path& template_folder,
     throw InputError("there is nothing to report; measure something with 'vislab run' first");
   }
   const WorkFolder work;
-  draw_charts(input, work.path());
-  write_words(input, template_folder, work.path());
+  const std::vector<PersistenceRow> persistence = persistence_rows(input);
+  draw_charts(input, persistence, work.path());
+  write_words(input, persistence, template_folder, work.path());
+  if (!persistence.empty()) write_text(work.path() / persistence_file, to_json(persistence));
   make_page(template_folder, work.path());
   print_page(work.path());
   publish(work.path(), folder);

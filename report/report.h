@@ -8,6 +8,7 @@
 
 #include "common/culler/registry.h"
 #include "experiments/analysis/break_points.h"
+#include "experiments/analysis/persistence.h"
 #include "experiments/analysis/published.h"
 #include "experiments/analysis/summary.h"
 #include "experiments/show/depth_complexity_picture.h"
@@ -35,9 +36,13 @@ struct ReportInput {
   /// it.
   std::function<DepthComplexityTable(const BlockSummary& block, const std::filesystem::path& file)>
       depth_complexity;
+  /// Counts how long hidden objects stayed hidden on a block's path. Throws InputError if its scene
+  /// or its truth is no longer there. Empty function: no section on it.
+  std::function<PersistenceCounts(const BlockSummary& block)> persistence;
 };
 
-/// Writes index.html and report.pdf into `folder` (made if missing). Both appear only when whole.
+/// Writes index.html, report.pdf and, if hidden things were counted, persistence.json into `folder`
+/// (made if missing). They appear only when whole.
 /// Runs pandoc, gnuplot and chromium; throws InputError that names the program that is missing or
 /// failed, or if there is nothing to report. `template_folder` is the repository's report/.
 void write_report(const ReportInput& input, const std::filesystem::path& template_folder,

@@ -25,7 +25,7 @@ double turn_deg(const Pose& a, const Pose& b) {
   return std::acos(std::clamp((trace - 1.0) / 2.0, -1.0, 1.0)) * 180.0 / std::numbers::pi;
 }
 
-/// Level and drop of least squares for a given time; level at most 1. Returns the weighted squares.
+/// Level (at most 1) and drop (at least 0) of least squares for a given time. Returns the weighted squares.
 double fit_at(const std::vector<StillHidden>& after, double time, PersistenceFit& fit) {
   double w = 0.0, wx = 0.0, wy = 0.0, wxx = 0.0, wxy = 0.0, wyy = 0.0;
   for (std::size_t t = 1; t < after.size(); ++t) {
@@ -42,12 +42,13 @@ double fit_at(const std::vector<StillHidden>& after, double time, PersistenceFit
   }
   const double spread = w * wxx - wx * wx;
   double slope = spread > 0.0 ? (w * wxy - wx * wy) / spread : 0.0;
+  slope = std::min(slope, 0.0);
   double level = (wy - slope * wx) / w;
   if (level > 1.0) {
     level = 1.0;
-    slope = wxx > 0.0 ? (wxy - wx) / wxx : 0.0;
+    slope = wxx > 0.0 ? std::min((wxy - wx) / wxx, 0.0) : 0.0;
   }
-  fit = {level, -slope, time};
+  fit = {level, 0.0 - slope, time};  // not -0
   return wyy + level * level * w + slope * slope * wxx - 2.0 * level * wy - 2.0 * slope * wxy +
          2.0 * level * slope * wx;
 }

@@ -31,7 +31,7 @@ struct StillHidden {
   Estimate share() const;
 };
 
-/// p(t) ≈ level - drop · e^(-t / time), for t from 1.
+/// p(t) ≈ level - drop · e^(-t / time), for t from 1; level at most 1, drop at least 0.
 struct PersistenceFit {
   double level = 0.0, drop = 0.0, time = 1.0;
 

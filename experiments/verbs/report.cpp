@@ -3,7 +3,9 @@
 #include <iostream>
 #include <tuple>
 
+#include "common/judge/path_truth.h"
 #include "common/scene/error.h"
+#include "experiments/results/store.h"
 #include "experiments/run/path_run.h"
 #include "experiments/show/depth_complexity_picture.h"
 #include "experiments/show/frame_picture.h"
@@ -33,6 +35,29 @@ DepthComplexityTable stored_depth_complexity(StoredScenes& scenes, const BlockSu
   return table;
 }
 
+/// From the truth that the block was judged by.
+PersistenceCounts stored_persistence(const std::filesystem::path& results, StoredScenes& scenes,
+                                     const BlockSummary& block) {
+  if (block.cells.empty()) throw InputError("block " + block.scene + " has no cell");
+  const std::string& id = block.cells.front().id;
+  const StoredScene& stored = scenes.of(block, id);
+  const ResultStore store = ResultStore::open(results);
+  const std::optional<ResultCell> cell = store.load_cell(id);
+  if (!cell) throw InputError("cell " + id + " is missing");
+  const TruthStore truths(store.truth_folder());
+  PersistenceCounter counter(stored.scene.object_count());
+  SceneState state(stored.scene);
+  PathTruth visible(stored.scene);
+  for_each_frame(stored.path, state, block.viewport,
+                 [&](std::size_t index, const Frame& frame, const Changes&) {
+                   std::optional<FrameTruth> truth = truths.load(cell->frames.at(index).truth);
+                   if (!truth) throw InputError("the truth of cell " + id + " is missing");
+                   visible.add(std::move(*truth));
+                   counter.add(frame, visible.visible_objects(index));
+                 });
+  return counter.counts();
+}
+
 }  // namespace
 
 int report(const Lab& lab, const std::filesystem::path& results,
@@ -51,6 +76,9 @@ int report(const Lab& lab, const std::filesystem::path& results,
   };
   input.depth_complexity = [&](const BlockSummary& block, const std::filesystem::path& file) {
     return stored_depth_complexity(scenes, block, file);
+  };
+  input.persistence = [&](const BlockSummary& block) {
+    return stored_persistence(results, scenes, block);
   };
   input.surface_picture = [&](const BlockSummary& block, const std::filesystem::path& file) {
     return write_stored_surfaces(results, scenes, block, file);
