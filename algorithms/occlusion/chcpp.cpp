@@ -77,7 +77,7 @@ CullerInfo describe() {
           "lazy", true, query,
           "visible units are asked about again behind the hidden nodes; without, "
           "just before they are drawn, a change from drawing to asking each"),
-      ParameterSpec::integer("interval", 8, 1, 1000, "frames", query,
+      ParameterSpec::integer("interval", 4, 1, 1000, "frames", query,
                              "visible units are asked about again after so many frames"),
       ParameterSpec::choice(
           "retest", "random", {"random", "aligned"}, query,
@@ -150,6 +150,9 @@ class Chcpp : public ICuller {
     memory_.reset(walk_.hierarchy().node_count());
     persistence_.reset();
     chance_ = Random(seed);
+    stretch_ = 1;
+    retests_read_ = 0;
+    retests_hidden_ = 0;
   }
 
   void update(const Frame& frame, const Changes& changes) override {
@@ -186,7 +189,7 @@ class Chcpp : public ICuller {
 
   std::size_t bytes() const override {
     return walk_.bytes() + boxes_of_.bytes() + memory_.bytes() +
-           (hidden_.capacity() + due_.capacity()) * sizeof(Entry) +
+           (hidden_.capacity() + due_.capacity() + found_.capacity()) * sizeof(Entry) +
            (asked_.capacity() + retests_.capacity()) * sizeof(Asked) +
            members_.capacity() * sizeof(Entry) +
            (boxes_.capacity() + group_boxes_.capacity()) * sizeof(Aabb) +
@@ -211,8 +214,14 @@ class Chcpp : public ICuller {
     std::uint32_t first_box = 0, box_count = 0;
     std::uint32_t hidden_frames = 0;
     bool alone = false;  // its group showed
+    bool again = false;  // it showed itself, but more may be drawn by now
   };
   using Queue = std::vector<Entry>;
+  static constexpr std::size_t retests_judged = 32;  // at least so many at a time
+  static constexpr std::size_t rarely_hidden = 32;   // less than one in so many
+  static constexpr std::uint32_t longest_stretch = 8;
+  static constexpr std::size_t many_found = 4;
+  static constexpr std::size_t worth_asking_again = 8;  // one in so many has to be hidden
   /// A query and what it is about: a run of members_.
   struct Asked {
     QueryId query;
@@ -244,7 +253,7 @@ class Chcpp : public ICuller {
     Entry entry = {visit};
     const bool due = known.test_at <= memory_.now() && find_boxes(entry);
     if (due) {
-      known.test_at = memory_.now() + interval_;
+      known.test_at = memory_.now() + interval_ * stretch_;
       due_.push_back(entry);
       if (!lazy_) ask_due(out);
     } else {
@@ -357,6 +366,8 @@ class Chcpp : public ICuller {
 
   /// Reads what was asked about hidden nodes: what is visible is drawn or opened.
   void read_answers() {
+    found_.clear();
+    std::size_t hidden = 0;
     for (const Asked& asked : asked_) {
       const bool visible = device_->samples(asked.query) > threshold_px_;
       for (std::uint32_t i = asked.first; i < asked.first + asked.count; ++i) {
@@ -368,15 +379,45 @@ class Chcpp : public ICuller {
           continue;
         }
         if (entry.hidden_frames > 0) persistence_.note(entry.hidden_frames, !visible);
-        if (visible) {
-          units_found_visible_ += walk_.hierarchy().is_unit(entry.visit.node) ? 1 : 0;
-          take_as_visible(entry.visit);
-        } else {
+        entry.hidden_frames = 0;
+        if (!visible) {
           memory_.note_hidden(entry.visit.node);
+          ++hidden;
+        } else if (walk_.hierarchy().is_unit(entry.visit.node)) {
+          found_.push_back(entry);
+        } else {
+          take_as_visible(entry.visit);
         }
       }
     }
     asked_.clear();
+    draw_found(hidden);
+  }
+
+  /// Many units that were found visible together may hide each other: after a cut, that is, since
+  /// else few appear at once. The nearer half is drawn and the rest asked about again, as long as
+  /// that finds some of them hidden.
+  void draw_found(std::size_t hidden) {
+    std::size_t drawn = found_.size();
+    const bool asked_again = !found_.empty() && found_.back().again;
+    const bool in_vain = asked_again && hidden * worth_asking_again < found_.size();
+    if (found_.size() >= many_found && !in_vain) {
+      drawn = (found_.size() + 1) / 2;
+      std::ranges::sort(found_, {}, [&](const Entry& entry) {
+        return std::pair(walk_.nearness(entry.visit.node), entry.visit.node);
+      });
+    }
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      if (i < drawn) {
+        ++units_found_visible_;
+        take_as_visible(found_[i].visit);
+        continue;
+      }
+      found_[i].alone = true;
+      found_[i].again = true;
+      hidden_.push_back(found_[i]);
+      ++requeries_;
+    }
   }
 
   /// Asks about the visible units that are left, and reads what became of all.
@@ -387,8 +428,16 @@ class Chcpp : public ICuller {
         memory_.note_visible(walk_.hierarchy(), asked.first);
       } else {
         memory_.note_hidden(asked.first);
+        ++retests_hidden_;
       }
     }
+    retests_read_ += retests_.size();
+    if (retests_read_ < retests_judged) return;
+    // Where nothing becomes hidden, looking for it is to cost next to nothing.
+    const bool pays = retests_hidden_ * rarely_hidden >= retests_read_;
+    stretch_ = pays ? 1 : std::min(2 * stretch_, longest_stretch);
+    retests_read_ = 0;
+    retests_hidden_ = 0;
   }
 
   CullerInfo info_;
@@ -406,6 +455,8 @@ class Chcpp : public ICuller {
   std::uint64_t threshold_px_;
   RenderDevice* device_ = nullptr;
   Random chance_{0};
+  std::uint32_t stretch_ = 1;  // of the interval, while re-tests find nothing hidden
+  std::size_t retests_read_ = 0, retests_hidden_ = 0;  // since that was judged
 
   // Of a call of cull().
   const Frame* frame_ = nullptr;
@@ -415,6 +466,7 @@ class Chcpp : public ICuller {
   Queue due_;                   // the V-queue
   std::vector<Asked> asked_;    // about hidden nodes
   Queue members_;               // of asked_
+  Queue found_;                 // units that show
   std::vector<Asked> retests_;  // first is the node
   std::vector<MultiqueryCandidate> candidates_;
   std::vector<std::uint32_t> ends_;

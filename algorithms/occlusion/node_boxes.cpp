@@ -4,10 +4,19 @@
 #include "common/render/query_bounds.h"
 
 namespace vislab::occlusion_culling {
+namespace {
+
+constexpr std::uint64_t box_triangles = 12;
+/// What is drawn has to have so many times the triangles of the boxes that are asked about.
+constexpr std::uint64_t worth_boxes = 16;
+
+}  // namespace
 
 void NodeBoxes::build(const Scene& scene, const std::optional<TightBounds::Limits>& limits) {
   tight_ = limits.has_value();
-  if (tight_) bounds_.build(scene, *limits);
+  if (!tight_) return;
+  bounds_.build(scene, *limits);
+  least_work_ = std::uint64_t{limits->max_boxes} * box_triangles * worth_boxes;
 }
 
 std::uint32_t NodeBoxes::append(const Frame& frame, const QueryHierarchy& hierarchy,
@@ -18,7 +27,7 @@ std::uint32_t NodeBoxes::append(const Frame& frame, const QueryHierarchy& hierar
   const Aabb whole = enlarged_for_query(frame.camera, frame.viewport, hierarchy.node(node).box);
   if (!askable(whole)) return 0;
   const std::size_t first = out.size();
-  if (!tight_ || !hierarchy.is_unit(node)) {
+  if (!tight_ || !hierarchy.is_unit(node) || hierarchy.work(node) < least_work_) {
     out.push_back(whole);
     return 1;
   }

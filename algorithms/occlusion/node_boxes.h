@@ -12,7 +12,8 @@ namespace vislab::occlusion_culling {
 
 class NodeBoxes {
  public:
-  /// Without limits a node has one box. The scene outlives this.
+  /// Without limits a node has one box; so do units so light that many boxes cost about as much as
+  /// they do. The scene outlives this.
   void build(const Scene& scene, const std::optional<TightBounds::Limits>& limits);
 
   /// Appends the boxes to ask about for a node, enlarged as devices need it. Returns how many. None
@@ -24,6 +25,7 @@ class NodeBoxes {
 
  private:
   bool tight_ = false;
+  std::uint64_t least_work_ = 0;  // of units with several boxes
   TightBounds bounds_;
 };
 

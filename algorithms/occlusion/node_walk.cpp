@@ -3,18 +3,16 @@
 #include <algorithm>
 
 namespace vislab::occlusion_culling {
-namespace {
 
-/// Squared distance from the eye, or depth for an orthographic camera.
-double nearness(const Camera& camera, const Aabb& box) {
+double NodeWalk::nearness(NodeIndex node) const {
+  const Camera& camera = frame_->camera;
+  const Aabb& box = hierarchy_.node(node).box;
   if (camera.lens.projection == Projection::perspective) {
     return distance_squared(box, camera.pose.eye);
   }
   const glm::dvec3 reach = glm::abs(camera.pose.back) * box.half_size();
   return camera.planar_depth(box.center()) - (reach.x + reach.y + reach.z);
 }
-
-}  // namespace
 
 void NodeWalk::build(const Scene& scene) {
   scene_ = &scene;
@@ -58,9 +56,8 @@ void NodeWalk::take(const Candidates& candidates) {
 }
 
 void NodeWalk::push(NodeIndex node, std::uint32_t planes) {
-  const Aabb& box = hierarchy_.node(node).box;
   if (hierarchy_.objects(node).empty() || (!everything_ && offered_below_[node] != call_)) return;
-  heap_.push_back({nearness(frame_->camera, box), {node, planes}});
+  heap_.push_back({nearness(node), {node, planes}});
   std::ranges::push_heap(heap_, later);
 }
 

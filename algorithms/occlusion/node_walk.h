@@ -46,6 +46,9 @@ class NodeWalk {
   /// What is offered of a unit and may be in the view is kept. Returns how many triangles.
   std::uint64_t draw(const Visit& visit);
 
+  /// What a walk goes by: squared distance from the eye, or depth for an orthographic camera.
+  double nearness(NodeIndex node) const;
+
   /// Emits what was kept since the last time. False if there was nothing.
   bool hand_over(DrawSink& out);
   /// Objects kept since start().

@@ -10,17 +10,13 @@ namespace {
 /// Leaves of light objects may hold several, for a smaller tree.
 constexpr std::uint32_t most_leaf_objects = 8;
 
-std::uint64_t work_of(std::uint64_t triangles, std::uint64_t objects) {
-  return triangles + objects * QueryHierarchy::draw_triangles;
-}
-
 }  // namespace
 
 void QueryHierarchy::build(const Scene& scene) {
   scene_ = &scene;
   std::uint64_t heaviest = 1;
   for (ObjectId object = 0; object < scene.object_count(); ++object) {
-    heaviest = std::max(heaviest, work_of(scene.triangle_count(object), 1));
+    heaviest = std::max(heaviest, std::uint64_t{scene.triangle_count(object)} + draw_triangles);
   }
   Bvh::Limits limits;
   limits.leaf_objects = static_cast<std::uint32_t>(
@@ -88,8 +84,7 @@ void QueryHierarchy::find_units() {
   std::ranges::fill(unit_of_, nowhere);
   for (const NodeIndex index : order_) {
     Links& links = links_[index];
-    links.unit = structure().nodes()[index].child_count == 0 ||
-                 work_of(links.triangles, links.count) <= leaf_triangles_;
+    links.unit = structure().nodes()[index].child_count == 0 || work(index) <= leaf_triangles_;
     const bool walk_ends_here =
         links.unit && (links.parent == nowhere || !links_[links.parent].unit);
     if (!walk_ends_here) continue;

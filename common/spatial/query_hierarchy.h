@@ -51,6 +51,10 @@ class QueryHierarchy {
   }
   /// Triangles of these objects.
   std::uint64_t triangles(NodeIndex node) const { return links_[node].triangles; }
+  /// The same, where a draw counts as draw_triangles.
+  std::uint64_t work(NodeIndex node) const {
+    return links_[node].triangles + std::uint64_t{links_[node].count} * draw_triangles;
+  }
   /// `nowhere` of an object that is hidden or unplaced.
   NodeIndex unit_of(ObjectId object) const { return unit_of_[object]; }
   /// Objects whose box is not valid.
