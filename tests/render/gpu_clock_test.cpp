@@ -74,6 +74,24 @@ TEST(GpuClock, EachDialOfTheDeviceCostsWhatItSays) {
   EXPECT_DOUBLE_EQ(clock.host_us(), clock.device_us());
 }
 
+TEST(GpuClock, DialsOfASoftwareRendererCostWhatTheySay) {
+  GpuModel model = free_model();
+  model.frame_us = 30.0;
+  model.host_shown_triangle_ns = 50.0;
+  model.shown_triangle_ns = 20.0;
+  model.outline_ns = 3.0;
+  GpuClock clock(model);
+  clock.begin_frame();
+  EXPECT_DOUBLE_EQ(clock.host_us(), 30.0);
+  draw(clock, 1, {1000, 0, 0});
+  EXPECT_DOUBLE_EQ(clock.host_us(), 30.0) << "nothing of it is seen";
+  draw(clock, 1, {1000, 1, 400});
+  EXPECT_DOUBLE_EQ(clock.host_us(), 30.0 + 50.0);
+  clock.query(1, 10, 200);
+  clock.finish();
+  EXPECT_DOUBLE_EQ(clock.device_us(), 80.0 + 20.0 + 1.2 + 0.6);
+}
+
 TEST(GpuClock, ACommandWaitsForItsHandOverAndForThoseBeforeIt) {
   GpuModel model = free_model();
   model.draw_us = 10.0;
