@@ -126,10 +126,15 @@ class MeshCutter {
   static std::array<Aabb, places + 1> boxes_between(const Leaf& leaf, int axis,
                                                     const std::array<float, places>& at) {
     std::array<Aabb, places + 1> slabs;
+    const float per_metre = static_cast<float>(places - 1) / (at.back() - at.front());
     for (const Piece& piece : leaf.pieces) {
       const float end = piece.box.max[axis];
       Aabb rest = piece.box;
-      std::size_t slab = std::ranges::lower_bound(at, rest.min[axis]) - at.begin();
+      // The first slab whose end is not before the box: guessed, then put right.
+      const float guess = (rest.min[axis] - at.front()) * per_metre;
+      auto slab = static_cast<int>(std::clamp(guess, 0.0F, static_cast<float>(places)));
+      while (slab > 0 && at[slab - 1] >= rest.min[axis]) --slab;
+      while (slab < places && at[slab] < rest.min[axis]) ++slab;
       for (; slab < places && end > at[slab]; ++slab) {
         rest.max[axis] = at[slab];
         slabs[slab].extend(rest);

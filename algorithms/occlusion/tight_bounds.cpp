@@ -6,10 +6,10 @@
 namespace vislab::occlusion_culling {
 namespace {
 
-constexpr std::uint32_t most_boxes = 64;  // a division may have
+constexpr std::uint32_t most_boxes = TightBounds::most_boxes;
 /// A mesh has so many times more parts than boxes may be given out, so that parts on one side of it
 /// can be small.
-constexpr std::uint32_t parts_per_box = 3;
+constexpr std::uint32_t parts_per_box = 2;
 constexpr double price_of_box = 0.02;  // of the room
 /// Boxes are made larger by this share of the whole's longest side before their room is compared,
 /// so that flat ones have some.
@@ -35,8 +35,7 @@ Aabb overlap_of(const Aabb& a, const Aabb& b) {
 class Division {
  public:
   Division(const TightBounds::Limits& limits, const Aabb& box)
-      : max_pieces_(std::min(limits.max_boxes, most_boxes)),
-        surface_limit_(limits.sigma * half_area(box)) {
+      : max_pieces_(limits.max_boxes), surface_limit_(limits.sigma * half_area(box)) {
     const glm::dvec3 size = box.half_size() * 2.0;
     pad_ = thickness * std::max({size.x, size.y, size.z});
   }
@@ -176,11 +175,11 @@ class TightBounds::Divider {
 
 void TightBounds::build(const Scene& scene, const Limits& limits) {
   scene_ = &scene;
-  limits_ = limits;
+  limits_ = {limits.sigma, std::min(limits.max_boxes, most_boxes)};
   parts_.assign(1, {});
   whole_mesh_.clear();
   for (const Mesh& mesh : scene.meshes) {
-    whole_mesh_.push_back(cut_mesh(mesh, parts_per_box * limits.max_boxes, parts_));
+    whole_mesh_.push_back(cut_mesh(mesh, parts_per_box * limits_.max_boxes, parts_));
   }
   parts_.shrink_to_fit();
 }

@@ -29,9 +29,12 @@ namespace vislab::occlusion_culling {
 
 class TightBounds {
  public:
+  /// More would cost more than they find.
+  static constexpr std::uint32_t most_boxes = 32;
+
   struct Limits {
     double sigma = 1.4;            // at least 1
-    std::uint32_t max_boxes = 16;  // that are given out for one object or node; at least 1
+    std::uint32_t max_boxes = 16;  // that are given out for one object or node; 1 to most_boxes
   };
 
   /// Divides the meshes of the scene, which outlives this.

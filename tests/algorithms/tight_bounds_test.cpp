@@ -93,7 +93,7 @@ TEST(TightBounds, HoldEveryPointOfEveryTriangleWithinTheSurfaceThatIsAllowed) {
   const SceneState state(scene);
   std::uint32_t divided = 0;
   for (const TightBounds::Limits limits :
-       {TightBounds::Limits{1.4, 16}, TightBounds::Limits{3.0, 64}, TightBounds::Limits{1.0, 2}}) {
+       {TightBounds::Limits{1.4, 16}, TightBounds::Limits{3.0, 32}, TightBounds::Limits{1.0, 2}}) {
     TightBounds bounds;
     bounds.build(scene, limits);
     for (ObjectId object = 0; object < scene.object_count(); ++object) {
