@@ -13,6 +13,7 @@
 #include "report/method_fields.h"
 #include "report/persistence_section.h"
 #include "report/process.h"
+#include "report/query_section.h"
 #include "report/sections.h"
 #include "report/sweep_chart.h"
 #include "report/sweep_section.h"
@@ -29,9 +30,9 @@ constexpr std::chrono::seconds time_limit{60};
 constexpr const char* persistence_file = "persistence.json";
 
 /// The report's parts in their order; each is templates/NAME.md.
-constexpr const char* parts[] = {"front",   "floor",     "depth",      "persistence", "guide",
-                                 "scenes",  "published", "surfaces",   "sweeps",      "controls",
-                                 "methods", "metrics",   "measurement"};
+constexpr const char* parts[] = {"front",    "floor",     "depth",    "persistence", "guide",
+                                 "scenes",   "published", "surfaces", "queries",     "sweeps",
+                                 "controls", "methods",   "metrics",  "measurement"};
 
 /// A folder for work in progress, gone with this object.
 class WorkFolder {
@@ -69,8 +70,8 @@ void write_text(const fs::path& file, const std::string& text) {
   if (!stream) throw InputError(file.string() + " cannot be written");
 }
 
-void draw_charts(const ReportInput& input, const std::vector<PersistenceRow>& persistence,
-                 const fs::path& work) {
+void draw_charts(const ReportInput& input, const QueryFindings& queries,
+                 const std::vector<PersistenceRow>& persistence, const fs::path& work) {
   std::string script;
   for (std::size_t i = 0; i < input.blocks.size(); ++i) {
     if (charted_cells(input.blocks[i]).empty()) continue;
@@ -83,16 +84,19 @@ void draw_charts(const ReportInput& input, const std::vector<PersistenceRow>& pe
   if (!persistence.empty()) {
     script += persistence_chart_script(persistence, persistence_chart_file);
   }
+  script += query_chart_script(queries);
   if (script.empty()) return;
   write_text(work / "charts.gnuplot", script);
   run_program(gnuplot, {"charts.gnuplot"}, work, time_limit);
 }
 
-void write_words(const ReportInput& input, const std::vector<PersistenceRow>& persistence,
-                 const fs::path& templates, const fs::path& work) {
+void write_words(const ReportInput& input, const QueryFindings& queries,
+                 const std::vector<PersistenceRow>& persistence, const fs::path& templates,
+                 const fs::path& work) {
   const fs::path folder = templates / "templates";
   Fields fields = report_fields(input, read_template(folder / "verdict.md"), work);
   add_persistence_fields(persistence, fields);
+  add_query_fields(input, queries, fields);
   cite_sources(read_template(templates / "bibliography.bib"), fields.lists["methods"]);
   std::string text;
   for (const std::string part : parts) {
@@ -163,8 +167,9 @@ void write_report(const ReportInput& input, const fs::path& template_folder,
   }
   const WorkFolder work;
   const std::vector<PersistenceRow> persistence = persistence_rows(input);
-  draw_charts(input, persistence, work.path());
-  write_words(input, persistence, template_folder, work.path());
+  const QueryFindings queries = find_queries(input);
+  draw_charts(input, queries, persistence, work.path());
+  write_words(input, queries, persistence, template_folder, work.path());
   if (!persistence.empty()) write_text(work.path() / persistence_file, to_json(persistence));
   make_page(template_folder, work.path());
   print_page(work.path());

@@ -39,6 +39,12 @@ struct ReportInput {
   /// Counts how long hidden objects stayed hidden on a block's path. Throws InputError if its scene
   /// or its truth is no longer there. Empty function: no section on it.
   std::function<PersistenceCounts(const BlockSummary& block)> persistence;
+  /// The measured share of what lies in the frustum of a block's frames that is hidden. Throws
+  /// InputError if its scene or its truth is no longer there. Empty function: no phase diagrams.
+  std::function<double(const BlockSummary& block)> hidden_share;
+  /// A cell's frame_ms by frame, each the median of its rounds. Throws InputError if the cell is no
+  /// longer there. Empty function: no chart of them.
+  std::function<std::vector<double>(const CellSummary& cell)> frame_times;
 };
 
 /// Writes index.html, report.pdf and, if hidden things were counted, persistence.json into `folder`

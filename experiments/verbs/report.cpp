@@ -9,6 +9,7 @@
 #include "experiments/run/path_run.h"
 #include "experiments/show/depth_complexity_picture.h"
 #include "experiments/show/frame_picture.h"
+#include "experiments/show/hidden_share.h"
 #include "experiments/show/surface_pictures.h"
 #include "experiments/verbs/present_results.h"
 #include "experiments/verbs/sweep_results.h"
@@ -58,6 +59,21 @@ PersistenceCounts stored_persistence(const std::filesystem::path& results, Store
   return counter.counts();
 }
 
+std::vector<double> stored_frame_times(const std::filesystem::path& results,
+                                       const CellSummary& cell) {
+  const std::optional<ResultCell> stored = ResultStore::open(results).load_cell(cell.id);
+  if (!stored) throw InputError("cell " + cell.id + " is missing");
+  std::vector<double> times;
+  for (std::size_t frame = 0; frame < stored->frames.size(); ++frame) {
+    std::vector<double> rounds;
+    for (const Round& round : stored->rounds) {
+      if (frame < round.frame_ms.size()) rounds.push_back(round.frame_ms[frame]);
+    }
+    if (!rounds.empty()) times.push_back(median(std::move(rounds)));
+  }
+  return times;
+}
+
 }  // namespace
 
 int report(const Lab& lab, const std::filesystem::path& results,
@@ -83,6 +99,10 @@ int report(const Lab& lab, const std::filesystem::path& results,
   input.surface_picture = [&](const BlockSummary& block, const std::filesystem::path& file) {
     return write_stored_surfaces(results, scenes, block, file);
   };
+  input.hidden_share = [&](const BlockSummary& block) {
+    return stored_hidden_share(results, scenes, block);
+  };
+  input.frame_times = [&](const CellSummary& cell) { return stored_frame_times(results, cell); };
   write_report(input, lab.report, output);
   std::cerr << "wrote " << (output / "index.html").string() << " and "
             << (output / "report.pdf").string() << '\n';

@@ -140,6 +140,34 @@ TEST_F(Report, SweepsStandInASectionOfTheirOwn) {
   EXPECT_EQ(words_of(read(folder_ / "index.html")).find("Where methods break"), std::string::npos);
 }
 
+TEST_F(Report, MethodsThatAskTheDeviceHaveASectionWithCharts) {
+  ReportInput input = fabricated_input();
+  for (const char* scene : {"field_10", "field_90"}) {
+    for (const char* latency : {"1", "500"}) {
+      BlockSummary block = fabricated_block(scene);
+      block.device = std::string("modelled[preset=gpu,latency_us=") + latency + "]";
+      block.cells.push_back(fabricated_cell("frustum.bvh", 0.5, 0, 4.0));
+      CellSummary asking = fabricated_cell("occlusion.chcpp", 0.25, 0, 1.0);
+      asking.asks_device = true;
+      asking.guarantee = Guarantee::image_exact;
+      asking.counters = {{"queries", 12.0}};
+      block.cells.push_back(asking);
+      input.blocks.push_back(block);
+    }
+  }
+  input.hidden_share = [](const BlockSummary& block) {
+    return block.scene == "field_10" ? 0.1 : 0.9;
+  };
+  write_report(input, templates, folder_);
+  const std::string words = words_of(read(folder_ / "index.html"));
+  EXPECT_NE(words.find("A occlusion.chcpp in 4 of the cells; ties: 0. The largest lead over the "
+                       "next best is 2.00 times, over frustum.bvh 2.00 times"),
+            std::string::npos);
+  EXPECT_NE(words.find("What was asked"), std::string::npos);
+  write_report(fabricated_input(), templates, folder_);
+  EXPECT_EQ(words_of(read(folder_ / "index.html")).find("What was asked"), std::string::npos);
+}
+
 TEST_F(Report, ThePageRefersToNothingOutside) {
   write_report(fabricated_input(), templates, folder_);
   const std::string html = read(folder_ / "index.html");

@@ -1,0 +1,54 @@
+// Who is fastest on a modelled graphics processor, by the latency of its answers and by how much of
+// what lies in the frustum is hidden.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/analysis/summary.h"
+
+namespace vislab {
+
+/// A block's fastest method.
+struct PhaseCell {
+  std::string winner, next;
+  double lead = 1.0;               // times as fast as the next best
+  std::optional<double> over_bvh;  // times as fast as frustum.bvh, if that was measured
+  bool decided = false;            // the lead is at least 1 %
+};
+
+struct PhaseRow {
+  std::string scene;
+  double hidden_share = 0.0;                         // measured
+  std::vector<std::optional<PhaseCell>> by_latency;  // none: not measured
+};
+
+struct PhaseDiagram {
+  std::string title;                 // what the scenes have in common, and the device
+  std::vector<double> latencies_us;  // ascending
+  std::vector<PhaseRow> rows;        // by ascending share
+  std::vector<std::string> winners;  // those that win anywhere, the most frequent first
+};
+
+/// Who may win in a block: methods that are right, judged and timed, and that ask the device or
+/// cull by the frustum alone. A modelled device's clock does not hold the processor's own work, so
+/// that methods which do theirs there would win for nothing.
+std::vector<const CellSummary*> phase_contestants(const BlockSummary& block);
+
+/// Diagrams of blocks on modelled devices that differ in latency and scene only, with at least two
+/// latencies and two scenes each. Scenes belong together if their names differ in digits only.
+/// Where `hidden_share` throws InputError, the scene is left out.
+std::vector<PhaseDiagram> phase_diagrams(
+    const std::vector<BlockSummary>& blocks,
+    const std::function<double(const BlockSummary& block)>& hidden_share);
+
+/// gnuplot commands that draw it into `file` (SVG, 680 units wide).
+std::string phase_script(const PhaseDiagram& diagram, const std::filesystem::path& file);
+
+/// A letter for the winner of that index: "A".
+std::string phase_letter(std::size_t winner);
+
+}  // namespace vislab

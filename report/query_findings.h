@@ -1,0 +1,39 @@
+// What the report says of methods that ask the device, found in the blocks before anything is
+// drawn.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "report/line_chart.h"
+#include "report/phase_diagram.h"
+#include "report/report.h"
+
+namespace vislab {
+
+/// Frame times of the same method with aligned and with randomised re-tests of what is visible.
+struct RetestPair {
+  std::string title;                                             // scene, path and device
+  std::string method;                                            // with randomised re-tests
+  std::vector<double> aligned_ms, random_ms;                     // by frame
+  double aligned_deviation_ms = 0.0, random_deviation_ms = 0.0;  // standard deviations
+};
+
+struct QueryFindings {
+  std::vector<PhaseDiagram> phases;
+  std::vector<RetestPair> retests;
+  std::vector<std::size_t> charted_retests;  // the pair of each title that differs most
+  /// Queries a second by the size of bunches; without a series if there are none.
+  LineChart bunches;
+};
+
+QueryFindings find_queries(const ReportInput& input);
+
+/// gnuplot commands for all charts of the section; files are named by the functions below.
+std::string query_chart_script(const QueryFindings& findings);
+std::string phase_file_name(std::size_t phase);    // "phases-1.svg"
+std::string retest_file_name(std::size_t retest);  // "retests-1.svg"
+inline constexpr const char* bunch_file_name = "bunches.svg";
+
+}  // namespace vislab
