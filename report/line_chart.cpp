@@ -83,9 +83,9 @@ std::string line_chart_script(const LineChart& line_chart, const std::filesystem
   for (std::size_t i = 0; i < line_chart.series.size(); ++i) {
     const Look look = method_look(i);
     out << (i == 0 ? " " : ", \\\n  ") << "$line" << i << " using 1:2 with "
-        << (line_chart.marked ? "linespoints pt " + std::to_string(look.shape) + " ps 0.8"
-                              : "lines")
-        << " notitle lw 1.6 lc rgb '" << look.colour << "'";
+        << (line_chart.marked ? "linespoints" : "lines") << " notitle lw 1.6 lc rgb '"
+        << look.colour << "'";
+    if (line_chart.marked) out << " pt " << look.shape << " ps 0.8";
   }
   out << '\n';
   write_legend(line_chart, legend, height, out);
