@@ -170,6 +170,8 @@ class Chcpp : public ICuller {
     boxes_.clear();
     asked_.clear();
     retests_.clear();
+    answers_ = 0;
+    found_hidden_ = 0;
 
     NodeWalk::Visit visit;
     for (;;) {
@@ -213,15 +215,14 @@ class Chcpp : public ICuller {
     NodeWalk::Visit visit;
     std::uint32_t first_box = 0, box_count = 0;
     std::uint32_t hidden_frames = 0;
-    bool alone = false;  // its group showed
-    bool again = false;  // it showed itself, but more may be drawn by now
+    bool alone = false;  // it or its group showed
   };
   using Queue = std::vector<Entry>;
   static constexpr std::size_t retests_judged = 32;  // at least so many at a time
   static constexpr std::size_t rarely_hidden = 32;   // less than one in so many
   static constexpr std::uint32_t longest_stretch = 8;
   static constexpr std::size_t many_found = 4;
-  static constexpr std::size_t worth_asking_again = 8;  // one in so many has to be hidden
+  static constexpr std::uint64_t query_triangles = 100;  // cost as much as a query
   /// A query and what it is about: a run of members_.
   struct Asked {
     QueryId query;
@@ -241,7 +242,9 @@ class Chcpp : public ICuller {
     } else if (!unit && memory_.was_visited(visit.node) && memory_.now() < known.test_at) {
       // Its box shows, though what is below it was hidden.
       walk_.open(visit);
-    } else if ((blind_ && walk_.kept_count() == 0) || !wait_hidden(visit)) {
+    } else if ((blind_ && walk_.kept_count() == 0) ||
+               (memory_.hidden_frames(visit.node) == 0 && !worth_asking(visit.node)) ||
+               !wait_hidden(visit)) {
       take_as_visible(visit);
     }
     known.visited = memory_.now();
@@ -367,7 +370,6 @@ class Chcpp : public ICuller {
   /// Reads what was asked about hidden nodes: what is visible is drawn or opened.
   void read_answers() {
     found_.clear();
-    std::size_t hidden = 0;
     for (const Asked& asked : asked_) {
       const bool visible = device_->samples(asked.query) > threshold_px_;
       for (std::uint32_t i = asked.first; i < asked.first + asked.count; ++i) {
@@ -378,11 +380,12 @@ class Chcpp : public ICuller {
           ++requeries_;
           continue;
         }
+        ++answers_;
         if (entry.hidden_frames > 0) persistence_.note(entry.hidden_frames, !visible);
         entry.hidden_frames = 0;
         if (!visible) {
           memory_.note_hidden(entry.visit.node);
-          ++hidden;
+          ++found_hidden_;
         } else if (walk_.hierarchy().is_unit(entry.visit.node)) {
           found_.push_back(entry);
         } else {
@@ -391,33 +394,39 @@ class Chcpp : public ICuller {
       }
     }
     asked_.clear();
-    draw_found(hidden);
+    draw_found();
   }
 
   /// Many units that were found visible together may hide each other: after a cut, that is, since
   /// else few appear at once. The nearer half is drawn and the rest asked about again, as long as
-  /// that finds some of them hidden.
-  void draw_found(std::size_t hidden) {
+  /// that is likely to find some of them hidden.
+  void draw_found() {
     std::size_t drawn = found_.size();
-    const bool asked_again = !found_.empty() && found_.back().again;
-    const bool in_vain = asked_again && hidden * worth_asking_again < found_.size();
-    if (found_.size() >= many_found && !in_vain) {
+    if (found_.size() >= many_found) {
       drawn = (found_.size() + 1) / 2;
       std::ranges::sort(found_, {}, [&](const Entry& entry) {
         return std::pair(walk_.nearness(entry.visit.node), entry.visit.node);
       });
     }
     for (std::size_t i = 0; i < found_.size(); ++i) {
-      if (i < drawn) {
+      if (i < drawn || !worth_asking(found_[i].visit.node)) {
         ++units_found_visible_;
         take_as_visible(found_[i].visit);
         continue;
       }
       found_[i].alone = true;
-      found_[i].again = true;
       hidden_.push_back(found_[i]);
       ++requeries_;
     }
+  }
+
+  /// Of a node of which nothing is known: a question is to save more than it costs, if as many are
+  /// hidden as have been found so far in this frame.
+  bool worth_asking(QueryHierarchy::NodeIndex node) const {
+    const std::uint64_t work = walk_.hierarchy().work(node);
+    const std::uint64_t least =
+        walk_.hierarchy().is_unit(node) ? query_triangles : walk_.hierarchy().leaf_triangles();
+    return (found_hidden_ + 1) * work >= (answers_ + 2) * least;
   }
 
   /// Asks about the visible units that are left, and reads what became of all.
@@ -462,12 +471,14 @@ class Chcpp : public ICuller {
   const Frame* frame_ = nullptr;
   bool blind_ = false;
   std::vector<Aabb> boxes_;
-  Queue hidden_;                // the I-queue
-  Queue due_;                   // the V-queue
-  std::vector<Asked> asked_;    // about hidden nodes
-  Queue members_;               // of asked_
-  Queue found_;                 // units that show
-  std::vector<Asked> retests_;  // first is the node
+  Queue hidden_;                    // the I-queue
+  Queue due_;                       // the V-queue
+  std::vector<Asked> asked_;        // about hidden nodes
+  Queue members_;                   // of asked_
+  Queue found_;                     // units that show
+  std::vector<Asked> retests_;      // first is the node
+  std::uint64_t answers_ = 0;       // about hidden nodes
+  std::uint64_t found_hidden_ = 0;  // of these
   std::vector<MultiqueryCandidate> candidates_;
   std::vector<std::uint32_t> ends_;
   std::vector<Aabb> group_boxes_;

@@ -59,9 +59,10 @@ CullerInfo describe() {
 /// What both levels share: where truth comes from.
 class Oracle : public ICuller {
  public:
-  explicit Oracle(Granularity level) {
+  explicit Oracle(Granularity level, Repeatability repeatability = Repeatability::stateless) {
     info_ = describe();
     info_.granularity = level;
+    info_.repeatability = repeatability;
   }
   const CullerInfo& info() const override { return info_; }
 
@@ -123,8 +124,9 @@ class ObjectOracle : public Oracle {
 /// Keeps the units of a hierarchy in which something is visible.
 class NodeOracle : public Oracle {
  public:
+  /// Which objects share a unit depends on where they were before.
   explicit NodeOracle(std::uint32_t leaf_triangles)
-      : Oracle(Granularity::object), hierarchy_(leaf_triangles) {}
+      : Oracle(Granularity::object, Repeatability::path), hierarchy_(leaf_triangles) {}
 
   void build(const Scene& scene, const BuildContext& context) override {
     Oracle::build(scene, context);

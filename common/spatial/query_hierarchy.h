@@ -37,6 +37,7 @@ class QueryHierarchy {
   /// From ICuller::update(). changed() is then what the changes made of the nodes.
   void update(const Frame& frame, const Changes& changes);
 
+  std::uint32_t leaf_triangles() const { return leaf_triangles_; }
   /// Boxes and children. A unit has children too, if it is an inner node of the tree: is_unit()
   /// says where a walk ends.
   const Bvh& structure() const { return followed_->structure(); }
