@@ -90,7 +90,7 @@ PersistenceFit PersistenceCounts::fit() const {
   if (known < 3) return {nothing, nothing, nothing};
   PersistenceFit best;
   double least = std::numeric_limits<double>::infinity();
-  for (double time = 0.25; time <= 16.0; time *= 1.05) {
+  for (double time = 0.5; time <= 16.0; time *= 1.05) {
     PersistenceFit fit;
     const double squares = fit_at(after, time, fit);
     if (squares < least) {
