@@ -153,11 +153,13 @@ class CommandLine {
         sub->add_option("--culler", show_.cullers,
                         "seen from the eye and from outside; with --queries as often as wanted")
             ->allow_extra_args(false);
-    sub->add_option("--queries", show_.queries,
-                    "what the cullers ask the device: strip (state changes), boxes or timeline "
-                    "(on a modelled device)")
-        ->needs(culler);
-    sub->add_option("--draw", show_.draw, "with --queries: a device, as run takes it");
+    CLI::Option* const queries =
+        sub->add_option("--queries", show_.queries,
+                        "what the cullers ask the device: strip (state changes), boxes or timeline "
+                        "(on a modelled device)")
+            ->needs(culler);
+    sub->add_option("--draw", show_.draw, "with --queries: a device, as run takes it")
+        ->needs(queries);
     sub->add_option("--depth-complexity", show_.depth_complexity,
                     "a heat map of rays, polygons or transparent, and the figures of all three");
     sub->add_option("--scene", show_.scene)->required();

@@ -1,5 +1,6 @@
 #include "report/line_chart.h"
 
+#include <algorithm>
 #include <sstream>
 #include <stdexcept>
 
@@ -35,17 +36,17 @@ void write_legend(const LineChart& line_chart, const Legend& legend, double heig
         << " left font ',10.5'\nset arrow from first " << legend.left(i) << ',' << legend.middle(i)
         << " to first " << legend.left(i) + 18.0 << ',' << legend.middle(i)
         << " nohead lw 1.6 lc rgb '" << look.colour << "'\n";
-    if (!line_chart.marked) continue;
+    if (line_chart.over_frames) continue;
     out << "$mark" << i << " << END\n"
         << legend.left(i) + 9.0 << ' ' << legend.middle(i) << "\nEND\n";
   }
   out << "plot";
-  for (std::size_t i = 0; line_chart.marked && i < line_chart.series.size(); ++i) {
+  for (std::size_t i = 0; !line_chart.over_frames && i < line_chart.series.size(); ++i) {
     const Look look = method_look(i);
     out << (i == 0 ? " " : ", \\\n  ") << "$mark" << i << " using 1:2 with points notitle pt "
         << look.shape << " ps 0.8 lc rgb '" << look.colour << "'";
   }
-  out << (line_chart.marked ? "\n" : " NaN notitle\n");
+  out << (line_chart.over_frames ? " NaN notitle\n" : "\n");
 }
 
 }  // namespace
@@ -75,6 +76,8 @@ std::string line_chart_script(const LineChart& line_chart, const std::filesystem
       << quoted(line_chart.x_title) << " offset 0,0.5\nset label " << quoted(line_chart.y_title)
       << " at screen " << y_title_left / chart_width << ','
       << (bottom + 0.5 * panel_height) / height << " center rotate by 90\n";
+  // One value alone gives an axis from zero.
+  if (line_chart.over_frames) xs = {std::max(1.0, std::ranges::max(xs))};
   set_axis(out, 'x', positive_axis(xs));
   set_axis(out, 'y', positive_axis(ys));
   set_margins(out, panel_left, bottom, panel_width, panel_height, height);
@@ -83,9 +86,9 @@ std::string line_chart_script(const LineChart& line_chart, const std::filesystem
   for (std::size_t i = 0; i < line_chart.series.size(); ++i) {
     const Look look = method_look(i);
     out << (i == 0 ? " " : ", \\\n  ") << "$line" << i << " using 1:2 with "
-        << (line_chart.marked ? "linespoints" : "lines") << " notitle lw 1.6 lc rgb '"
+        << (line_chart.over_frames ? "lines" : "linespoints") << " notitle lw 1.6 lc rgb '"
         << look.colour << "'";
-    if (line_chart.marked) out << " pt " << look.shape << " ps 0.8";
+    if (!line_chart.over_frames) out << " pt " << look.shape << " ps 0.8";
   }
   out << '\n';
   write_legend(line_chart, legend, height, out);

@@ -5,7 +5,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
-#include <set>
+#include <span>
 
 #include "common/scene/error.h"
 #include "experiments/analysis/statistics.h"
@@ -14,6 +14,7 @@ namespace vislab {
 namespace {
 
 constexpr std::size_t least_batches = 3;
+constexpr std::size_t most_retest_charts = 4;
 
 std::string title_of(const BlockSummary& block) {
   return block.scene + (block.path.empty() ? "" : ", " + block.path) + ", " + block.device;
@@ -37,12 +38,17 @@ std::optional<Cut> cut_at(const std::string& canonical, const std::string& param
   return std::nullopt;
 }
 
-double deviation(const std::vector<double>& samples) {
+double deviation(std::span<const double> samples) {
   const auto count = static_cast<double>(samples.size());
   const double mean = std::accumulate(samples.begin(), samples.end(), 0.0) / count;
   double sum = 0.0;
   for (const double sample : samples) sum += (sample - mean) * (sample - mean);
   return std::sqrt(sum / count);
+}
+
+/// The whole path's times without those of its first quarter.
+std::span<const double> settled(const std::vector<double>& times) {
+  return std::span<const double>(times).subspan(times.size() / 4);
 }
 
 void add_retests(const ReportInput& input, const BlockSummary& block,
@@ -61,8 +67,10 @@ void add_retests(const ReportInput& input, const BlockSummary& block,
       continue;  // measured, but no longer there
     }
     if (pair.aligned_ms.size() < 2 || pair.random_ms.size() < 2) continue;
-    pair.aligned_deviation_ms = deviation(pair.aligned_ms);
-    pair.random_deviation_ms = deviation(pair.random_ms);
+    pair.aligned_deviation_ms = deviation(settled(pair.aligned_ms));
+    pair.random_deviation_ms = deviation(settled(pair.random_ms));
+    pair.aligned_worst_ms = std::ranges::max(settled(pair.aligned_ms));
+    pair.random_worst_ms = std::ranges::max(settled(pair.random_ms));
     pairs.push_back(std::move(pair));
   }
 }
@@ -80,7 +88,9 @@ std::vector<std::size_t> most_different(const std::vector<RetestPair>& pairs) {
   }
   std::vector<std::size_t> chosen;
   for (const auto& [title, index] : best) chosen.push_back(index);
-  std::ranges::sort(chosen);
+  std::ranges::stable_sort(chosen, std::ranges::greater(),
+                           [&](std::size_t i) { return difference(pairs[i]); });
+  chosen.resize(std::min(chosen.size(), most_retest_charts));
   return chosen;
 }
 
@@ -102,7 +112,7 @@ void add_bunches(const BlockSummary& block, std::vector<LineSeries>& lines) {
 }
 
 LineChart retest_chart(const RetestPair& pair) {
-  LineChart chart{"frame", "frame_ms (ms)", {{"aligned", {}}, {"randomised", {}}}, false};
+  LineChart chart{"frame", "frame_ms (ms)", {{"aligned", {}}, {"randomised", {}}}, true};
   for (std::size_t k = 0; k < 2; ++k) {
     const std::vector<double>& times = k == 0 ? pair.aligned_ms : pair.random_ms;
     for (std::size_t i = 0; i < times.size(); ++i) {
@@ -117,7 +127,7 @@ LineChart retest_chart(const RetestPair& pair) {
 QueryFindings find_queries(const ReportInput& input) {
   QueryFindings findings;
   findings.phases = phase_diagrams(input.blocks, input.hidden_share);
-  findings.bunches = {"queries in a bunch", "queries a second", {}, true};
+  findings.bunches = {"queries in a bunch", "queries a second", {}, false};
   for (const BlockSummary& block : input.blocks) add_bunches(block, findings.bunches.series);
   if (input.frame_times) {
     for (const auto* blocks : {&input.blocks, &input.sweep_blocks}) {

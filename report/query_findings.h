@@ -14,16 +14,19 @@ namespace vislab {
 
 /// Frame times of the same method with aligned and with randomised re-tests of what is visible.
 struct RetestPair {
-  std::string title;                                             // scene, path and device
-  std::string method;                                            // with randomised re-tests
-  std::vector<double> aligned_ms, random_ms;                     // by frame
+  std::string title;                          // scene, path and device
+  std::string method;                         // with randomised re-tests
+  std::vector<double> aligned_ms, random_ms;  // by frame
+  // Without the first quarter of the path, in which everything is new.
   double aligned_deviation_ms = 0.0, random_deviation_ms = 0.0;  // standard deviations
+  double aligned_worst_ms = 0.0, random_worst_ms = 0.0;
 };
 
 struct QueryFindings {
   std::vector<PhaseDiagram> phases;
   std::vector<RetestPair> retests;
-  std::vector<std::size_t> charted_retests;  // the pair of each title that differs most
+  /// The pair of each title that differs most; a few of them, the greatest difference first.
+  std::vector<std::size_t> charted_retests;
   /// Queries a second by the size of bunches; without a series if there are none.
   LineChart bunches;
 };

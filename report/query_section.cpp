@@ -70,17 +70,14 @@ Fields phase_fields(const PhaseDiagram& diagram, std::size_t index) {
   entry.values["ties"] = std::to_string(ties);
   entry.flag("has_bvh", over_bvh > 0.0);
   entry.values["over_bvh"] = format_number(over_bvh);
-  auto& scenes = entry.lists["scenes"];
+  std::string shares;
   for (const PhaseRow& row : diagram.rows) {
-    Fields scene;
-    scene.values["scene"] = markdown_text(row.scene);
-    scene.values["share"] = format_percent(row.hidden_share);
-    scenes.push_back(std::move(scene));
+    shares += (shares.empty() ? "" : ", ") + markdown_text(row.scene) + " " +
+              format_percent(row.hidden_share);
   }
+  entry.values["shares"] = shares;
   return entry;
 }
-
-double worst(const std::vector<double>& times) { return *std::ranges::max_element(times); }
 
 Fields retest_fields(const RetestPair& pair) {
   Fields row;
@@ -91,8 +88,8 @@ Fields retest_fields(const RetestPair& pair) {
   row.values["ratio"] = pair.aligned_deviation_ms > 0.0
                             ? format_number(pair.random_deviation_ms / pair.aligned_deviation_ms)
                             : "–";
-  row.values["worst_aligned"] = format_number(worst(pair.aligned_ms));
-  row.values["worst_random"] = format_number(worst(pair.random_ms));
+  row.values["worst_aligned"] = format_number(pair.aligned_worst_ms);
+  row.values["worst_random"] = format_number(pair.random_worst_ms);
   return row;
 }
 

@@ -106,7 +106,7 @@ ReportInput retest_input() {
   input.blocks.push_back(block);
   input.frame_times = [](const CellSummary& cell) {
     const bool aligned = cell.canonical.find("aligned") != std::string::npos;
-    return aligned ? std::vector<double>{1.0, 1.0, 5.0, 1.0}
+    return aligned ? std::vector<double>{9.0, 1.0, 4.0, 1.0}
                    : std::vector<double>{2.0, 2.0, 2.0, 2.0};
   };
   return input;
@@ -116,13 +116,13 @@ TEST(QuerySection, PairsAlignedWithRandomisedReTests) {
   ReportInput input = retest_input();
   const QueryFindings findings = find_queries(input);
   ASSERT_EQ(findings.retests.size(), 1U);
-  EXPECT_NEAR(findings.retests[0].aligned_deviation_ms, 1.7320508, 1e-6);
+  EXPECT_NEAR(findings.retests[0].aligned_deviation_ms, 1.4142136, 1e-6);
   EXPECT_EQ(findings.retests[0].random_deviation_ms, 0.0);
   EXPECT_EQ(findings.charted_retests, std::vector<std::size_t>{0});
   EXPECT_NE(query_chart_script(findings).find(retest_file_name(0)), std::string::npos);
   Fields fields;
   add_query_fields(input, findings, fields);
-  EXPECT_EQ(fields.lists["retests"][0].values["worst_aligned"], "5.00");
+  EXPECT_EQ(fields.lists["retests"][0].values["worst_aligned"], "4.00");
   input.frame_times = [](const CellSummary&) -> std::vector<double> { throw InputError("gone"); };
   EXPECT_TRUE(find_queries(input).retests.empty());
 }
