@@ -9,10 +9,16 @@
 // Guarantee: conservative: every point of every triangle lies in one of the boxes, in exact
 //   arithmetic. Boxes of turned objects grow, as boxes of boxes do; they are cut to the object's
 //   own box, and the rule holds for what is given out, always.
-// Cost: build O(t) for each of some dozen cuts of a mesh of t triangles; an object or node costs
-//   1 to 3 us. Boxes of what does not move may be kept by the caller.
+// Cost: build O(t) for each of some dozen cuts of a mesh of t triangles, about 0.5 us a triangle
+//   in all; an object or node costs 1 to 5 us. Boxes of what does not move may be kept by the
+//   caller.
 // Limits: boxes lie along the axes of the world; a plane at 45 degrees gains only by many boxes. A
 //   pixel that several of the boxes cover counts for each: thresholds above 0 pixels mean less.
+// Measured over 8 views, with all that is visible drawn: of the hidden objects in the view one box
+//   finds 49 % and parts find 71 % in an outdoor scene (256 objects), 70 and 88 % in an apartment
+//   (33), 95 and 98 % in a Quake world (768); all either way in a city of boxes and a plant, whose
+//   nodes gain: 95.8 and 99.5 % in the city. The surface falls to 0.7 to 0.8 of the one box's.
+//   Sigma of 1.4 and 2 find the same objects; beyond 2, boxes go to the inside of hollow meshes.
 // Sources: Zachmann, Computer-Graphik 2, SS 2012, slides 69-70 (sigma = 1.4); Mattausch, Bittner,
 //   Wimmer 2008, CHC++, section 5.2.
 #pragma once
