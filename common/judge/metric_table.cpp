@@ -44,6 +44,8 @@ std::span<const Metric> metrics() {
       Metric{"cull_us", "us", lower, "deciding what to draw"},
       Metric{"draw_ms", "ms", lower, "time inside calls of the device"},
       Metric{"frame_ms", "ms", lower, "wall time from update until everything is drawn"},
+      Metric{"frame_ms_deviation", "ms", lower,
+             "standard deviation of frame_ms over all frames but the first, and all rounds"},
       Metric{"modelled_frame_ms", "ms", lower,
              "test cost + submitted triangles * calibrated cost; for methods that use the device "
              "frame time / none's * that of none; not wall time"},

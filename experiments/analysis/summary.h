@@ -16,6 +16,9 @@ struct TimeSummary {
   Estimate median;              // of the frames; the interval comes from resampling rounds
   double p95 = 0.0, p99 = 0.0;  // over all samples of all rounds
   double worst = 0.0;
+  /// Standard deviation of all samples but the first of each round, when nothing is known yet of
+  /// the path; of a single frame NaN.
+  double deviation = 0.0;
 
   bool measured() const { return median.measured(); }
 };
