@@ -21,6 +21,13 @@ constexpr double y_title_left = 12.0;
 constexpr double decided_lead = 1.01;
 constexpr const char* baseline = "frustum.bvh";
 
+/// As it was given: "0", "2.5", "1000".
+std::string plain(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
 /// A device's text without its latency, and the latency.
 struct Place {
   std::string device;
@@ -35,7 +42,7 @@ std::optional<Place> place_of(const std::string& device) {
   Place place;
   place.device = "modelled[preset=" + spec.preset;
   for (const auto& [dial, value] : spec.given) {
-    if (dial != "latency_us") place.device += ", " + dial + "=" + format_number(value);
+    if (dial != "latency_us") place.device += ", " + dial + "=" + plain(value);
   }
   place.device += "]";
   place.latency_us = spec.model(gpu_preset(spec.preset).model).latency_us;
@@ -173,7 +180,7 @@ class PhaseWriter {
     ChartAxis x;
     x.high = static_cast<double>(diagram_.latencies_us.size());
     for (std::size_t i = 0; i < diagram_.latencies_us.size(); ++i) {
-      x.ticks.emplace_back(static_cast<double>(i) + 0.5, format_number(diagram_.latencies_us[i]));
+      x.ticks.emplace_back(static_cast<double>(i) + 0.5, plain(diagram_.latencies_us[i]));
     }
     ChartAxis y;
     y.high = static_cast<double>(diagram_.rows.size());
@@ -256,7 +263,10 @@ std::vector<PhaseDiagram> phase_diagrams(
   for (const Group& group : groups_of(blocks)) {
     PhaseDiagram diagram;
     diagram.title = group.title;
-    for (const auto& [latency, block] : group.blocks) diagram.latencies_us.push_back(latency);
+    for (const auto& [latency, block] : group.blocks) {
+      diagram.latencies_us.push_back(latency);
+      diagram.blocks.push_back(block);
+    }
     std::ranges::sort(diagram.latencies_us);
     const auto repeated = std::ranges::unique(diagram.latencies_us);
     diagram.latencies_us.erase(repeated.begin(), repeated.end());

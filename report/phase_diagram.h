@@ -27,10 +27,11 @@ struct PhaseRow {
 };
 
 struct PhaseDiagram {
-  std::string title;                 // what the scenes have in common, and the device
-  std::vector<double> latencies_us;  // ascending
-  std::vector<PhaseRow> rows;        // by ascending share
-  std::vector<std::string> winners;  // those that win anywhere, the most frequent first
+  std::string title;                        // what the scenes have in common, and the device
+  std::vector<double> latencies_us;         // ascending
+  std::vector<PhaseRow> rows;               // by ascending share
+  std::vector<const BlockSummary*> blocks;  // of which it speaks
+  std::vector<std::string> winners;         // those that win anywhere, the most frequent first
 };
 
 /// Who may win in a block: methods that are right, judged and timed, and that ask the device or

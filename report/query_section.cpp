@@ -12,10 +12,17 @@ std::string counter_of(const CellSummary& cell, const std::string& name) {
   return found == cell.counters.end() ? "–" : format_number(found->second);
 }
 
+/// Methods that rasterise themselves count queries, too, but ask no device.
 bool asks(const CellSummary& cell) {
   const auto found = cell.counters.find("queries");
-  return found != cell.counters.end() && found->second > 0.0 &&
+  return cell.asks_device && found != cell.counters.end() && found->second > 0.0 &&
          cell.guarantee != Guarantee::erroneous;
+}
+
+bool has_diagram(const QueryFindings& findings, const BlockSummary& block) {
+  return std::ranges::any_of(findings.phases, [&](const PhaseDiagram& diagram) {
+    return std::ranges::count(diagram.blocks, &block) > 0;
+  });
 }
 
 Fields row_of(const BlockSummary& block, const CellSummary& cell) {
@@ -98,6 +105,7 @@ Fields retest_fields(const RetestPair& pair) {
 void add_query_fields(const ReportInput& input, const QueryFindings& findings, Fields& fields) {
   auto& rows = fields.lists["queries"];
   for (const BlockSummary& block : input.blocks) {
+    if (has_diagram(findings, block)) continue;
     for (const CellSummary& cell : block.cells) {
       if (asks(cell)) rows.push_back(row_of(block, cell));
     }

@@ -228,6 +228,30 @@ TEST_F(BadInput, AnUnknownDepthComplexityNamesTheKnownAndNeedsNoCuller) {
   EXPECT_FALSE(fs::exists(picture));
 }
 
+TEST_F(BadInput, APictureOfQueriesNeedsAKnownKindAFrameAndACullerThatAsks) {
+  const std::string picture = folder_.path() / "picture.png";
+  const auto show = [&](const std::string& kind, const std::string& culler,
+                        const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {
+        "show",           "--queries",    kind,    "--culler", culler, "--scene",
+        "box_field_tiny", "--resolution", "32x32", "-o",       picture};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = run_vislab(arguments);
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    return result.err;
+  };
+  EXPECT_NE(show("stripes", "occlusion.batched", {}).find("strip, boxes, timeline"),
+            std::string::npos);
+  EXPECT_NE(show("strip", "frustum.flat", {}).find("never asks a device"), std::string::npos);
+  EXPECT_NE(show("strip", "occlusion.batched", {"--frame", "100000"}).find("has frames 0 to"),
+            std::string::npos);
+  EXPECT_NE(show("timeline", "occlusion.batched", {"--draw", "osmesa"}).find("modelled device"),
+            std::string::npos);
+  EXPECT_NE(show("boxes", "occlusion.batched", {"--draw", "none"}).find("needs a device"),
+            std::string::npos);
+  EXPECT_FALSE(fs::exists(picture));
+}
+
 TEST_F(BadInput, WrongCallsEndWithCodeTwo) {
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{},
@@ -241,6 +265,9 @@ TEST_F(BadInput, WrongCallsEndWithCodeTwo) {
         {"run", "small", "--filter", "fits nothing", "--results", results()},
         {"run", "small", "--frames", "3", "--results", results()},
         {"run", "--culler", "none", "--scene", "box_field_tiny", "--resolution", "0x5"},
+        {"run", "--culler", "none", "--scene", "box_field_tiny", "--draw", "modelled[latency=1]"},
+        {"run", "--culler", "none", "--scene", "box_field_tiny", "--draw", "vulkan"},
+        {"describe", "modelled[preset=voodoo]"},
         {"check", "--culler", "frustum.fast"},
         {"compare", "none", "frustum.fast"}}) {
     EXPECT_EQ(run_vislab(arguments).exit_code, 2) << (arguments.empty() ? "" : arguments.front());

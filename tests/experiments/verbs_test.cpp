@@ -118,6 +118,19 @@ TEST(Verbs, ExportCompareAndShowReadTheResultsOfARun) {
   EXPECT_GT(std::filesystem::file_size(picture), 1000U);
 }
 
+TEST(Verbs, WhatCullersAskIsPicturedInThreeWays) {
+  const TemporaryFolder folder;
+  for (const std::string kind : {"strip", "boxes", "timeline"}) {
+    const std::string picture = folder.path() / (kind + ".png");
+    const ProgramResult shown =
+        run_vislab({"show", "--queries", kind, "--culler", "occlusion.stop_and_wait", "--culler",
+                    "occlusion.chcpp", "--scene", "plant_tiny", "--frame", "2", "--draw",
+                    "modelled[preset=gpu]", "--resolution", "64x48", "-o", picture});
+    ASSERT_EQ(shown.exit_code, 0) << shown.err;
+    EXPECT_GT(std::filesystem::file_size(picture), 1000U);
+  }
+}
+
 TEST(Verbs, DepthComplexityIsPicturedAndCountedByAllDefinitions) {
   const TemporaryFolder folder;
   const std::string picture = folder.path() / "depth.png";

@@ -152,6 +152,9 @@ TEST(QuerySection, SaysWhatWasAskedWithTheTailBesideEveryMedian) {
   CellSummary control = asking("occlusion.wrong", 0.3, 5.0);
   control.guarantee = Guarantee::erroneous;
   input.blocks[0].cells.push_back(control);
+  CellSummary software = asking("depth.masked", 0.3, 5.0);
+  software.asks_device = false;
+  input.blocks[0].cells.push_back(software);
   Fields fields;
   add_query_fields(input, find_queries(input), fields);
   const auto& rows = fields.lists["queries"];
@@ -162,6 +165,13 @@ TEST(QuerySection, SaysWhatWasAskedWithTheTailBesideEveryMedian) {
   EXPECT_EQ(rows[0].values.at("queries"), "40.0");
   EXPECT_EQ(rows[0].values.at("query_boxes"), "80.0");
   EXPECT_EQ(rows[0].values.at("flushes"), "–");
+
+  input.blocks = phase_blocks();
+  input.hidden_share = share_of;
+  Fields charted;
+  add_query_fields(input, find_queries(input), charted);
+  EXPECT_TRUE(charted.lists["queries"].empty());
+  EXPECT_EQ(charted.lists["phases"].size(), 1U);
 }
 
 TEST(QuerySection, IsLeftAwayWithoutMethodsThatAsk) {

@@ -163,9 +163,9 @@ TEST_F(Report, MethodsThatAskTheDeviceHaveASectionWithCharts) {
   EXPECT_NE(words.find("A occlusion.chcpp in 4 of the cells; ties: 0. The largest lead over the "
                        "next best is 2.00 times, over frustum.bvh 2.00 times"),
             std::string::npos);
-  EXPECT_NE(words.find("What was asked"), std::string::npos);
+  EXPECT_EQ(words.find("What was asked"), std::string::npos);  // the diagram says it
   write_report(fabricated_input(), templates, folder_);
-  EXPECT_EQ(words_of(read(folder_ / "index.html")).find("What was asked"), std::string::npos);
+  EXPECT_EQ(words_of(read(folder_ / "index.html")).find("Who is fastest"), std::string::npos);
 }
 
 TEST_F(Report, ThePageRefersToNothingOutside) {
