@@ -179,6 +179,8 @@ Fields scene_fields(const ReportInput& input, std::size_t index,
   fields.values["rounds"] = rounds_of(block);
   fields.values["threads"] = std::to_string(block.threads);
   fields.values["device"] = markdown_code(block.device);
+  fields.flag("modelled_device", block.device_model.has_value());
+  fields.values["dials"] = block.device_model ? markdown_code(to_text(*block.device_model)) : "";
   fields.values["verdict"] = trimmed_to_one_line(
       fill_template(verdict_template, finding_fields(block, title), "verdict.md"));
   fields.flag("undrawn", !block.drawn);

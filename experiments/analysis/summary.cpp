@@ -86,8 +86,18 @@ RoundTimes anchor_times(const ResultCell& cell, const std::string& chain) {
   return found == cell.anchors.end() ? RoundTimes{} : times_of(found->second);
 }
 
-std::string oracle_of(Granularity granularity) {
-  return "oracle[level=" + std::string(to_string(granularity)) + "]";
+/// The chain of the oracle of that level that was measured beside the cell, or that the cell is of;
+/// "" if none was. It may have further parameters.
+std::string oracle_of(const ResultCell& cell) {
+  const std::string level = "oracle[level=" + std::string(to_string(cell.granularity));
+  const auto fits = [&](const std::string& chain) {
+    return is_oracle(chain) && (chain.starts_with(level + "]") || chain.starts_with(level + ","));
+  };
+  if (fits(cell.key.chain)) return cell.key.chain;
+  for (const auto& [chain, rounds] : cell.anchors) {
+    if (fits(chain)) return chain;
+  }
+  return {};
 }
 
 /// A cell as its own anchor pairs with itself, whether or not the harness wrote it down twice.
@@ -216,7 +226,7 @@ CellSummary summarise_cell(const JudgedCell& judged) {
   if (cell.key.device == no_device) return summary;
   const Pairs none = pair_rounds(cell, anchor_or_own(cell, none_chain));
   summary.against_none = paired_ratio(none.cell, none.anchor);
-  const Pairs oracle = pair_rounds(cell, anchor_or_own(cell, oracle_of(cell.granularity)));
+  const Pairs oracle = pair_rounds(cell, anchor_or_own(cell, oracle_of(cell)));
   summary.efficiency = paired_ratio(oracle.anchor, oracle.cell);
   return summary;
 }
@@ -293,6 +303,7 @@ BlockSummary summarise_block(const std::vector<const JudgedCell*>& cells) {
   block.costs = costs_by_machine(cells);
   for (const JudgedCell* cell : cells) {
     block.frames = std::max(block.frames, static_cast<int>(cell->cell.frames.size()));
+    if (!block.device_model) block.device_model = cell->cell.device_model;
     block.cells.push_back(summarise_cell(*cell));
     const CellSummary& summary = block.cells.back();
     if (is_none(cell->cell.key) && summary.replicate > 0) block.noise = summary.against_none;

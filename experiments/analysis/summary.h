@@ -64,7 +64,8 @@ struct CellSummary {
   double build_ms = 0.0;
   /// Test cost (update_us + cull_us) + what is submitted at calibrated costs: triangles, draws and
   /// further pieces of meshes. Methods that use the device: against_none × that of none, for what
-  /// they save or wait for there is not in what they submit. NaN without calibrated costs.
+  /// they save or wait for there is not in what they submit. NaN without calibrated costs, and on
+  /// modelled devices, whose costs are their own.
   double modelled_frame_ms = 0.0;
   bool asks_device = false;
   bool calibrated = false;  // measured with a table of costs beside it; not so in old results
@@ -96,6 +97,9 @@ struct BlockSummary {
   double moving_objects = 0.0;  // a frame
   /// False on the device "none": there are no images, and times hold no drawing to be saved.
   bool drawn = true;
+  /// The dials of a modelled device, fitted ones included; there frame_ms and draw_ms are the
+  /// device's own clock. Of the first cell that has them.
+  std::optional<GpuModel> device_model;
   /// Truth against the unculled image, over all frames.
   std::uint64_t floor_pixels = 0, floor_disputed_px = 0, floor_undisputed_px = 0;
   /// none against its A/A control: how far from 1 the interval reaches is the noise of ratios.

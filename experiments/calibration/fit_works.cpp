@@ -143,9 +143,8 @@ void FitWorks::add_drawings() {
 
 void FitWorks::add_queries() {
   const Step background = draw(wall_objects(false));
-  const Step boxes = draw(field(small_boxes, 64));
   const auto batch = [&](std::uint32_t queries, std::uint32_t boxes_each, double half_side_m) {
-    std::vector<Step> steps{background};
+    std::vector<Step> steps{background, {Kind::flush}};
     for (std::uint32_t i = 0; i < queries; ++i) {
       steps.push_back(ask(i * boxes_each, boxes_each, 9.0, half_side_m));
     }
@@ -158,7 +157,7 @@ void FitWorks::add_queries() {
   works_.push_back({"64 queries of 8 boxes", batch(64, 8, 0.05)});
   works_.push_back({"16 large queries", batch(16, 1, 2.0)});
 
-  std::vector<Step> turns{background}, alone{background}, flushed{background};
+  std::vector<Step> turns{background, {Kind::flush}}, alone = turns;
   for (std::uint32_t i = 0; i < 64; ++i) {
     const Step object = draw({first_box + i});
     const Step question = ask(i, 1, 9.0, 0.05);

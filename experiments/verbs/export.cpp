@@ -59,6 +59,7 @@ std::vector<std::string> column_names(const std::set<std::string>& counters) {
       columns.push_back("cost." + std::string(quantity.name) + part);
     }
   }
+  for (const GpuDial& dial : gpu_dials()) columns.push_back("device." + std::string(dial.name));
   for (const std::string& name : counters) columns.push_back("counter." + name);
   return columns;
 }
@@ -83,6 +84,15 @@ void add_costs(const BlockSummary& block, const CellSummary& cell, Row& row) {
     const Cost& cost = costs->second.*quantity.cost;
     row.insert(row.end(), {cost.ns, cost.low_ns, cost.high_ns});
   }
+}
+
+/// Of a modelled device.
+void add_device(const BlockSummary& block, Row& row) {
+  if (!block.device_model) {
+    row.insert(row.end(), gpu_dials().size(), TableValue());
+    return;
+  }
+  for (const GpuDial& dial : gpu_dials()) row.emplace_back(dial.value(*block.device_model));
 }
 
 /// Per frame; a counter that the cell does not have does not apply.
@@ -123,6 +133,7 @@ int export_results(const Lab& lab, const std::string& format,
       }
       add_statistics(cell, row);
       add_costs(block, cell, row);
+      add_device(block, row);
       add_counters(cell, counters, row);
       table.add(std::move(row));
     }

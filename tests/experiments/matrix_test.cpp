@@ -44,6 +44,22 @@ TEST_F(MatrixFile, ListsMultiply) {
   EXPECT_EQ(matrix.blocks.back().frames, 4);
 }
 
+TEST_F(MatrixFile, DevicesMultiplyToo) {
+  const std::string lists = "[lists]\nculler = [\"none\"]\nscene = [\"a\"]\n";
+  const Matrix matrix = load(lists +
+                             "device = [\"osmesa\", \"modelled[latency_us=700]\"]\n[[adjust]]\n"
+                             "device = \"modelled*\"\nrounds = 1\n");
+  ASSERT_EQ(matrix.blocks.size(), 2U);
+  EXPECT_EQ(matrix.blocks[0].device, "osmesa");
+  EXPECT_EQ(matrix.blocks[0].rounds, 5);
+  EXPECT_EQ(matrix.blocks[1].device, "modelled[preset=gpu,latency_us=700]");
+  EXPECT_EQ(matrix.blocks[1].rounds, 1);
+  EXPECT_EQ(load("draw = \"modelled[preset=modern]\"\n" + lists).blocks.at(0).device,
+            "modelled[preset=modern]");
+  EXPECT_NE(refusal(lists + "device = [\"modelled[latency=7]\"]\n").find("test.toml:4"),
+            std::string::npos);
+}
+
 TEST_F(MatrixFile, EveryBlockHasNoneTwiceAndBothOraclesOnce) {
   const Matrix matrix =
       load("[lists]\nculler = [\"none\", \"oracle\", \"frustum.flat\"]\nscene = [\"a\"]\n");

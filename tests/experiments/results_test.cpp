@@ -53,6 +53,15 @@ TEST(ResultCell, IsReadWithoutCostsIfItIsFromBeforeTheyWereMeasured) {
   EXPECT_EQ(back.frames[0].draws, 0U);
 }
 
+TEST(ResultCell, KeepsTheDialsOfAModelledDevice) {
+  ResultCell cell = sample_cell();
+  EXPECT_FALSE(parse_cell(to_json(cell), "test").value().device_model.has_value());
+  cell.device_model = gpu_preset("modern").model;
+  cell.device_model->latency_us = 1.0 / 3.0;
+  cell.device_model->serial = true;
+  EXPECT_EQ(parse_cell(to_json(cell), "test").value().device_model, cell.device_model);
+}
+
 TEST(ResultCell, KeepsEveryCostWithItsUnitAndSpread) {
   const nlohmann::json costs = nlohmann::json::parse(to_json(sample_cell())).at("costs");
   EXPECT_EQ(costs.size(), cost_quantities().size());

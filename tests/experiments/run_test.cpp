@@ -75,6 +75,36 @@ TEST_F(Run, MeasuresEveryCellWithItsAnchors) {
                                    "frustum.flat", "backface.polygon", "occlusion.stop_and_wait"}));
 }
 
+TEST_F(Run, OnAModelledDeviceEveryTimeRepeatsBitForBit) {
+  const fs::path modelled =
+      folder_.write("modelled.toml",
+                    "rounds = 2\ndraw = \"modelled[latency_us=200]\"\n[lists]\n"
+                    "culler = [\"frustum.bvh > occlusion.stop_and_wait\", \"occlusion.chcpp\"]\n"
+                    "scene = [\"city_tiny\"]\nresolution = [\"64x64\"]\nframes = [4]\n");
+  const fs::path again = folder_.path() / "again";
+  ASSERT_EQ(run_vislab(call(modelled, results())).exit_code, 0);
+  ASSERT_EQ(run_vislab(call(modelled, again)).exit_code, 0);
+  std::size_t asking = 0;
+  for (const ResultCell& cell : cells()) {
+    EXPECT_EQ(cell.status, ResultCell::Status::done) << cell.culler << ": " << cell.reason;
+    ASSERT_TRUE(cell.device_model.has_value());
+    EXPECT_EQ(cell.device_model->latency_us, 200.0);
+    const auto other = ResultStore::open(again).load_cell(cell.key.id());
+    ASSERT_TRUE(other.has_value());
+    ASSERT_EQ(cell.rounds.size(), 2U);
+    EXPECT_EQ(cell.rounds[0].frame_ms, other->rounds[1].frame_ms) << cell.culler;
+    EXPECT_EQ(cell.rounds[0].draw_ms, cell.rounds[0].frame_ms);
+    for (std::size_t i = 0; i < cell.frames.size(); ++i) {
+      EXPECT_EQ(cell.frames[i].set, other->frames[i].set);
+      EXPECT_EQ(cell.frames[i].counters, other->frames[i].counters);
+    }
+    const auto& counters = cell.frames.back().counters;
+    asking += counters.contains("state_changes") ? 1 : 0;
+  }
+  EXPECT_EQ(asking, 2U);
+  EXPECT_EQ(answers(results()), answers(again));
+}
+
 TEST_F(Run, FindsWhatIsDone) {
   ASSERT_EQ(run_vislab(call(matrix(), results())).exit_code, 0);
   std::map<fs::path, std::string> before;

@@ -70,6 +70,19 @@ TEST_F(SweepFileTest, TheResolutionMayDependOnTheDial) {
       << "half a pixel";
 }
 
+TEST_F(SweepFileTest, TheDeviceMayDependOnTheDial) {
+  const std::string field = "[scene.generator]\nkind = \"box_field\"\ncount = 20\n";
+  const Sweep sweep = load("draw = \"modelled[latency_us=${dial}]\"\n" + head + dial + field);
+  ASSERT_EQ(sweep.blocks.size(), 8U);
+  EXPECT_EQ(sweep.blocks[3].device, "modelled[preset=gpu,latency_us=4]");
+  EXPECT_EQ(sweep.blocks[0].scene, sweep.blocks[3].scene);
+  EXPECT_NE(sweep.conditions[0], sweep.conditions[3]);
+  EXPECT_NE(refusal("draw = \"modelled[pipeline_depth=${dial}]\"\n" + head + dial + field)
+                .find("pipeline_depth"),
+            std::string::npos)
+      << "half a command";
+}
+
 TEST_F(SweepFileTest, AGapAloneInItsQuotesBecomesTheNumberAsItWasWritten) {
   const Sweep sweep = load(head + dial + scene);
   const auto text_of = [&](std::size_t value) {
