@@ -121,7 +121,7 @@ Image render_query_strip(const StripInput& input) {
   canvas.text(margin, 28.0, strip_width, 19.0, true, input.title);
   double top = title_height;
   for (const StripRow& row : input.rows) {
-    canvas.text(margin, top + 17.0, strip_width, 15.0, true, row.name + ": " + row.note);
+    canvas.text(margin, top + 17.0, strip_width, 15.0, true, row.name + "   " + row.note);
     draw_strip(canvas, row, top + heading_height, mark_width);
     top += heading_height + margin +
            line_height * static_cast<double>(lines_for(commands_of(row), mark_width));

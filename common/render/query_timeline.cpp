@@ -117,10 +117,11 @@ class Timeline {
   static std::string note(const TimelineFigures& figures) {
     return number(1e-3 * figures.frame_us) + " ms: the processor waits " +
            percent(figures.waits_us, figures.frame_us) + " of it, the device works " +
-           percent(figures.device_us, figures.frame_us) + "; " + std::to_string(figures.draws) +
-           " draws, " + std::to_string(figures.queries) + " queries of " +
-           std::to_string(figures.boxes) + " boxes, " + std::to_string(figures.state_changes) +
-           " changes between drawing and asking";
+           percent(figures.device_us, figures.frame_us) +
+           "; draws: " + std::to_string(figures.draws) +
+           ", queries: " + std::to_string(figures.queries) +
+           " (boxes: " + std::to_string(figures.boxes) +
+           "), state changes: " + std::to_string(figures.state_changes);
   }
   void axis(double top) {
     const double step = step_for(1e-3 * span_us_);

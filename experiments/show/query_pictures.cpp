@@ -34,9 +34,9 @@ StripRow strip_row(const RecordedFrame& row, const Scene& scene) {
       if (first == none_id) first = static_cast<std::uint32_t>(i);
     }
   }
-  strip.note = std::to_string(row.states.size() - 1) + " state changes, " +
-               std::to_string(queries) + " queries of " + std::to_string(boxes) + " boxes, " +
-               std::to_string(draws) + " draws, " + std::to_string(row.flushes) + " flushes";
+  strip.note = "state changes: " + std::to_string(row.states.size() - 1) +
+               ", queries: " + std::to_string(queries) + " (boxes: " + std::to_string(boxes) +
+               "), draws: " + std::to_string(draws) + ", flushes: " + std::to_string(row.flushes);
   return strip;
 }
 
