@@ -59,11 +59,11 @@ std::string note_of(const QueryBoxesRow& row) {
     boxes += query.boxes.size();
     most = std::max(most, query.boxes.size());
   }
-  std::string note =
-      std::to_string(row.queries.size()) + " queries, " + std::to_string(hidden) +
-      " of them found nothing to be seen; of several boxes: " + std::to_string(several);
+  std::string note = "queries: " + std::to_string(row.queries.size()) +
+                     ", found nothing to be seen: " + std::to_string(hidden) +
+                     ", of several boxes: " + std::to_string(several);
   if (several > 0) {
-    note += " (" + std::to_string(boxes) + " boxes, at most " + std::to_string(most) + " in one)";
+    note += " (together " + std::to_string(boxes) + ", at most " + std::to_string(most) + ")";
   }
   return note;
 }
