@@ -37,7 +37,14 @@ std::size_t farthest_time(const PersistenceCounts& counts) {
 
 std::string with_cases(const StillHidden& still) {
   if (still.cases == 0) return "–";
-  return format_estimate(still.share()) + " [of " + format_count(still.cases) + "]{.interval}";
+  return format_number(still.share().value) + " [of " + format_count(still.cases) + "]{.interval}";
+}
+
+std::string text_of(const PersistenceFit& fit) {
+  if (std::isnan(fit.level)) return "–";
+  if (fit.drop == 0.0) return format_number(fit.level);
+  return format_number(fit.level) + " − " + format_number(fit.drop) + " e^−t/" +
+         format_number(fit.time) + "^";
 }
 
 Fields row_of(const PersistenceRow& row) {
@@ -57,12 +64,9 @@ Fields row_of(const PersistenceRow& row) {
       t == 0 ? "–"
              : format_number(std::abs(counts.after[t].share().value -
                                       Persistence::formula(static_cast<std::uint32_t>(t)))) +
-                   " at t = " + std::to_string(t);
+                   " [t = " + std::to_string(t) + "]{.interval}";
   const PersistenceFit fit = counts.fit();
-  fields.values["fit"] = std::isnan(fit.level)
-                             ? "–"
-                             : format_number(fit.level) + " − " + format_number(fit.drop) +
-                                   " e^−t/" + format_number(fit.time) + "^";
+  fields.values["fit"] = text_of(counts.fit());
   return fields;
 }
 

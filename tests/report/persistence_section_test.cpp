@@ -47,7 +47,7 @@ TEST(PersistenceSection, SaysTheExtremesAndHowManyPathsAgreeWithTheFormula) {
       << text;
   EXPECT_NE(text.find("| 2 | 0.895 | – | – | 0 of 0 |"), std::string::npos);
   EXPECT_NE(text.find("| plant | `plant_fast` | 3.25 | 0.500 |"), std::string::npos);
-  EXPECT_NE(text.find("0.267 at t = 1 |"), std::string::npos);  // of city_slow
+  EXPECT_NE(text.find("| 0.267 [t = 1]{.interval} |"), std::string::npos);  // of city_slow
 }
 
 TEST(PersistenceSection, StaysAwayWithoutRows) {
