@@ -29,10 +29,12 @@
 
 #include <algorithm>
 
+#include "algorithms/occlusion/chcpp_info.h"
 #include "algorithms/occlusion/multiquery.h"
 #include "algorithms/occlusion/node_boxes.h"
 #include "algorithms/occlusion/node_memory.h"
 #include "algorithms/occlusion/node_walk.h"
+#include "algorithms/occlusion/sleep_pattern.h"
 #include "common/culler/registry.h"
 #include "common/geometry/random.h"
 #include "common/scene/error.h"
@@ -48,73 +50,13 @@ using occlusion_culling::NodeBoxes;
 using occlusion_culling::NodeMemory;
 using occlusion_culling::NodeWalk;
 using occlusion_culling::Persistence;
+using occlusion_culling::SleepPattern;
 using occlusion_culling::TightBounds;
-
-CullerInfo describe() {
-  constexpr auto build = ParameterSpec::Stage::build;
-  constexpr auto query = ParameterSpec::Stage::query;
-  CullerInfo info;
-  info.name = "occlusion.chcpp";
-  info.family = "occlusion";
-  info.summary =
-      "Draws what was visible, asks about hidden nodes of a hierarchy in batches that share "
-      "queries, "
-      "and now and then about what is visible.";
-  info.guarantee = Guarantee::image_exact;
-  info.repeatability = Repeatability::path;
-  info.granularity = Granularity::object;
-  info.culls = Culls::hidden;
-  info.space = Space::image;
-  info.stage = PipelineStage::raster;
-  info.needs_device = true;
-  info.parameters = {
-      ParameterSpec::integer("leaf_triangles", 1000, 1, 100'000'000, "triangles", build,
-                             "nodes with so many triangles, a draw counting as 20, are asked about "
-                             "and drawn as a whole"),
-      ParameterSpec::integer("batch", 50, 1, 10'000, "nodes", query,
-                             "so many hidden nodes at most wait to be asked about in one go"),
-      ParameterSpec::boolean(
-          "lazy", true, query,
-          "visible units are asked about again behind the hidden nodes; without, "
-          "just before they are drawn, a change from drawing to asking each"),
-      ParameterSpec::integer("interval", 4, 1, 1000, "frames", query,
-                             "visible units are asked about again after so many frames"),
-      ParameterSpec::choice(
-          "retest", "random", {"random", "aligned"}, query,
-          "the first time after a random part of the interval, or after all of it, "
-          "so that what appeared together is asked about in one frame"),
-      ParameterSpec::boolean("multiqueries", true, query,
-                             "nodes that have been hidden for long share queries"),
-      ParameterSpec::choice("cost_model", "paper", {"paper", "slides"}, query,
-                            "by what multiqueries are grouped: expected queries, or triangles not "
-                            "drawn against boxes asked about"),
-      ParameterSpec::choice(
-          "persistence", "formula", {"formula", "measured"}, query,
-          "how likely hidden nodes stay hidden: 0.99 - 0.7 e^-t, or as counted on "
-          "the path so far"),
-      ParameterSpec::boolean("tight_bounds", true, build,
-                             "units are asked about by the boxes of their parts"),
-      ParameterSpec::real("sigma", 1.4, 1.0, 100.0, "", build,
-                          "the parts' boxes have at most so many times the surface of the one box"),
-      ParameterSpec::integer("max_boxes", 16, 1, 4096, "boxes", build,
-                             "a unit has at most so many boxes"),
-      ParameterSpec::integer(
-          "threshold_px", 0, 0, 1'000'000, "pixels", query,
-          "nodes whose boxes show no more pixels than this are left out; above 0 "
-          "small things vanish from the image")};
-  info.cost = "O(visible nodes + hidden nodes beside them), and a query for a part of these";
-  info.limits =
-      "What shows by its boxes but not by itself is drawn. After a cut it knows nothing and waits "
-      "for several rounds of answers. With threshold_px > 0 it is approximate.";
-  info.sources = {"Mattausch, Bittner, Wimmer 2008, CHC++: Coherent Hierarchical Culling Revisited",
-                  "Zachmann, Computer-Graphik 2, SS 2012, slides 64-75"};
-  return info;
-}
 
 class Chcpp : public ICuller {
  public:
   explicit Chcpp(const ParameterValues& values)
-      : info_(describe()),
+      : info_(occlusion_culling::chcpp_info()),
         walk_(static_cast<std::uint32_t>(values.integer("leaf_triangles"))),
         batch_(static_cast<std::size_t>(values.integer("batch"))),
         lazy_(values.boolean("lazy")),
@@ -150,9 +92,7 @@ class Chcpp : public ICuller {
     memory_.reset(walk_.hierarchy().node_count());
     persistence_.reset();
     chance_ = Random(seed);
-    stretch_ = 1;
-    retests_read_ = 0;
-    retests_hidden_ = 0;
+    sleep_ = {};
   }
 
   void update(const Frame& frame, const Changes& changes) override {
@@ -165,28 +105,41 @@ class Chcpp : public ICuller {
     memory_.start(frame, walk_.hierarchy());
     // Without any memory nothing is known to be visible; what is nearest is.
     blind_ = !memory_.was_visited(SpatialStructure::root);
-    walk_.start(frame, candidates);
+    const bool asleep = sleep_.asleep(frame.index);
+    walk_.start(frame, candidates, asleep ? NodeWalk::Order::any : NodeWalk::Order::near_first);
     for (Queue* queue : {&hidden_, &due_}) queue->clear();
     boxes_.clear();
     asked_.clear();
     retests_.clear();
     answers_ = 0;
     found_hidden_ = 0;
-
+    drawn_work_ = 0;
+    hidden_work_ = 0;
+    waiting_triangles_ = 0;
+    units_new_ = 0;
+    units_drawn_now_ = 0;
     NodeWalk::Visit visit;
+    if (asleep) {
+      while (walk_.next(visit)) take_unasked(visit);
+      sleep_.note_slept(units_new_ * new_part >= units_drawn_now_);
+      units_drawn_ += units_drawn_now_;
+      walk_.hand_over(out);
+      return;
+    }
     for (;;) {
       while (walk_.next(visit)) {
         decide(visit, out);
         if (hidden_.size() < batch_) continue;
-        read_answers();
+        read_answers(out);
         ask(out);
       }
       if (asked_.empty() && hidden_.empty()) break;
       if (asked_.empty()) ask(out);
-      read_answers();
+      read_answers(out);
     }
     finish_retests(out);
     walk_.hand_over(out);
+    sleep_.note_tried(hidden_work_ * hidden_part < drawn_work_);
   }
 
   std::size_t bytes() const override {
@@ -218,9 +171,9 @@ class Chcpp : public ICuller {
     bool alone = false;  // it or its group showed
   };
   using Queue = std::vector<Entry>;
-  static constexpr std::size_t retests_judged = 32;  // at least so many at a time
-  static constexpr std::size_t rarely_hidden = 32;   // less than one in so many
-  static constexpr std::uint32_t longest_stretch = 8;
+  static constexpr std::uint64_t hand_over_triangles = 30'000;
+  static constexpr std::uint64_t hidden_part = 20;  // less than one in so many is hardly any
+  static constexpr std::uint64_t new_part = 8;      // one in so many is much
   static constexpr std::size_t many_found = 4;
   static constexpr std::uint64_t query_triangles = 100;  // cost as much as a query
   /// A query and what it is about: a run of members_.
@@ -245,28 +198,46 @@ class Chcpp : public ICuller {
     } else if ((blind_ && walk_.kept_count() == 0) ||
                (memory_.hidden_frames(visit.node) == 0 && !worth_asking(visit.node)) ||
                !wait_hidden(visit)) {
-      take_as_visible(visit);
+      take_as_visible(visit, out);
     }
     known.visited = memory_.now();
+  }
+
+  /// While asleep: everything in the view is drawn.
+  void take_unasked(const NodeWalk::Visit& visit) {
+    NodeMemory::Node& known = memory_[visit.node];
+    known.visited = memory_.now();
+    if (!walk_.hierarchy().is_unit(visit.node)) {
+      walk_.open(visit);
+      return;
+    }
+    if (!memory_.was_visible(visit.node)) {
+      known.test_at = memory_.now() + first_interval();
+      ++units_new_;
+    }
+    memory_.note_visible(walk_.hierarchy(), visit.node);
+    ++units_drawn_now_;
+    walk_.draw(visit);
   }
 
   /// A unit that was visible is drawn; if its time has come it is asked about for the next frame.
   void draw_visible(const NodeWalk::Visit& visit, DrawSink& out) {
     NodeMemory::Node& known = memory_[visit.node];
     Entry entry = {visit};
-    const bool due = known.test_at <= memory_.now() && find_boxes(entry);
+    const bool due = known.test_at <= memory_.now() && due_.size() + retests_.size() < batch_ &&
+                     find_boxes(entry);
     if (due) {
-      known.test_at = memory_.now() + interval_ * stretch_;
+      known.test_at = memory_.now() + interval_;
       due_.push_back(entry);
       if (!lazy_) ask_due(out);
     } else {
       memory_.note_visible(walk_.hierarchy(), visit.node);
     }
-    draw(visit);
+    draw(visit, out);
   }
 
   /// What was not visible before is, or nothing can be found out about it.
-  void take_as_visible(const NodeWalk::Visit& visit) {
+  void take_as_visible(const NodeWalk::Visit& visit, DrawSink& out) {
     NodeMemory::Node& known = memory_[visit.node];
     known.hidden_since = 0;
     known.test_at = memory_.now() + first_interval();
@@ -275,16 +246,23 @@ class Chcpp : public ICuller {
       return;
     }
     memory_.note_visible(walk_.hierarchy(), visit.node);
-    draw(visit);
+    draw(visit, out);
   }
 
   std::uint32_t first_interval() {
     return random_ ? 1 + static_cast<std::uint32_t>(chance_.below(interval_)) : interval_;
   }
 
-  void draw(const NodeWalk::Visit& visit) {
+  /// What is drawn is handed over now and then, so that the device has something to do meanwhile.
+  void draw(const NodeWalk::Visit& visit, DrawSink& out) {
     ++units_drawn_;
-    walk_.draw(visit);
+    drawn_work_ += walk_.hierarchy().work(visit.node);
+    waiting_triangles_ += walk_.draw(visit);
+    if (waiting_triangles_ < hand_over_triangles) return;
+    waiting_triangles_ = 0;
+    walk_.hand_over(out);
+    out.flush();
+    device_->flush();
   }
 
   bool find_boxes(Entry& entry) {
@@ -368,7 +346,7 @@ class Chcpp : public ICuller {
   }
 
   /// Reads what was asked about hidden nodes: what is visible is drawn or opened.
-  void read_answers() {
+  void read_answers(DrawSink& out) {
     found_.clear();
     for (const Asked& asked : asked_) {
       const bool visible = device_->samples(asked.query) > threshold_px_;
@@ -386,21 +364,22 @@ class Chcpp : public ICuller {
         if (!visible) {
           memory_.note_hidden(entry.visit.node);
           ++found_hidden_;
+          hidden_work_ += walk_.hierarchy().work(entry.visit.node);
         } else if (walk_.hierarchy().is_unit(entry.visit.node)) {
           found_.push_back(entry);
         } else {
-          take_as_visible(entry.visit);
+          take_as_visible(entry.visit, out);
         }
       }
     }
     asked_.clear();
-    draw_found();
+    draw_found(out);
   }
 
   /// Many units that were found visible together may hide each other: after a cut, that is, since
   /// else few appear at once. The nearer half is drawn and the rest asked about again, as long as
   /// that is likely to find some of them hidden.
-  void draw_found() {
+  void draw_found(DrawSink& out) {
     std::size_t drawn = found_.size();
     if (found_.size() >= many_found) {
       drawn = (found_.size() + 1) / 2;
@@ -411,7 +390,7 @@ class Chcpp : public ICuller {
     for (std::size_t i = 0; i < found_.size(); ++i) {
       if (i < drawn || !worth_asking(found_[i].visit.node)) {
         ++units_found_visible_;
-        take_as_visible(found_[i].visit);
+        take_as_visible(found_[i].visit, out);
         continue;
       }
       found_[i].alone = true;
@@ -437,16 +416,9 @@ class Chcpp : public ICuller {
         memory_.note_visible(walk_.hierarchy(), asked.first);
       } else {
         memory_.note_hidden(asked.first);
-        ++retests_hidden_;
+        hidden_work_ += walk_.hierarchy().work(asked.first);
       }
     }
-    retests_read_ += retests_.size();
-    if (retests_read_ < retests_judged) return;
-    // Where nothing becomes hidden, looking for it is to cost next to nothing.
-    const bool pays = retests_hidden_ * rarely_hidden >= retests_read_;
-    stretch_ = pays ? 1 : std::min(2 * stretch_, longest_stretch);
-    retests_read_ = 0;
-    retests_hidden_ = 0;
   }
 
   CullerInfo info_;
@@ -464,21 +436,23 @@ class Chcpp : public ICuller {
   std::uint64_t threshold_px_;
   RenderDevice* device_ = nullptr;
   Random chance_{0};
-  std::uint32_t stretch_ = 1;  // of the interval, while re-tests find nothing hidden
-  std::size_t retests_read_ = 0, retests_hidden_ = 0;  // since that was judged
+  SleepPattern sleep_;
 
   // Of a call of cull().
   const Frame* frame_ = nullptr;
   bool blind_ = false;
   std::vector<Aabb> boxes_;
-  Queue hidden_;                    // the I-queue
-  Queue due_;                       // the V-queue
-  std::vector<Asked> asked_;        // about hidden nodes
-  Queue members_;                   // of asked_
-  Queue found_;                     // units that show
-  std::vector<Asked> retests_;      // first is the node
-  std::uint64_t answers_ = 0;       // about hidden nodes
-  std::uint64_t found_hidden_ = 0;  // of these
+  Queue hidden_;                // the I-queue
+  Queue due_;                   // the V-queue
+  std::vector<Asked> asked_;    // about hidden nodes
+  Queue members_;               // of asked_
+  Queue found_;                 // units that show
+  std::vector<Asked> retests_;  // first is the node
+  std::uint64_t drawn_work_ = 0, hidden_work_ = 0;
+  std::uint64_t units_new_ = 0, units_drawn_now_ = 0;  // while asleep
+  std::uint64_t waiting_triangles_ = 0;                // drawn, but not handed over
+  std::uint64_t answers_ = 0;                          // about hidden nodes
+  std::uint64_t found_hidden_ = 0;                     // of these
   std::vector<MultiqueryCandidate> candidates_;
   std::vector<std::uint32_t> ends_;
   std::vector<Aabb> group_boxes_;
@@ -496,7 +470,7 @@ class Chcpp : public ICuller {
 namespace cullers {
 
 CullerEntry occlusion_chcpp() {
-  return {describe(),
+  return {occlusion_culling::chcpp_info(),
           [](const ParameterValues& values) { return std::make_unique<Chcpp>(values); }};
 }
 

@@ -22,7 +22,8 @@ void NodeWalk::build(const Scene& scene) {
   heap_.reserve(hierarchy_.node_count());
 }
 
-void NodeWalk::start(const Frame& frame, const Candidates& candidates) {
+void NodeWalk::start(const Frame& frame, const Candidates& candidates, Order order) {
+  order_ = order;
   frame_ = &frame;
   frustum_ = frustum_of(frame.camera);
   kept_.clear();
@@ -57,14 +58,15 @@ void NodeWalk::take(const Candidates& candidates) {
 
 void NodeWalk::push(NodeIndex node, std::uint32_t planes) {
   if (hierarchy_.objects(node).empty() || (!everything_ && offered_below_[node] != call_)) return;
-  heap_.push_back({nearness(node), {node, planes}});
-  std::ranges::push_heap(heap_, later);
+  const bool sorted = order_ == Order::near_first;
+  heap_.push_back({sorted ? nearness(node) : 0.0, {node, planes}});
+  if (sorted) std::ranges::push_heap(heap_, later);
 }
 
 bool NodeWalk::next(Visit& visit) {
   while (!heap_.empty()) {
-    visit = heap_.front().visit;
-    std::ranges::pop_heap(heap_, later);
+    if (order_ == Order::near_first) std::ranges::pop_heap(heap_, later);
+    visit = heap_.back().visit;
     heap_.pop_back();
     ++nodes_visited_;
     if (!outside(hierarchy_.node(visit.node).box, visit.planes)) return true;

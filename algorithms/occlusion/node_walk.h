@@ -36,10 +36,12 @@ class NodeWalk {
   void update(const Frame& frame, const Changes& changes) { hierarchy_.update(frame, changes); }
   const QueryHierarchy& hierarchy() const { return hierarchy_; }
 
+  enum class Order { near_first, any };
+
   /// At the start of cull(): only the root waits, and objects that no node holds are drawn.
-  void start(const Frame& frame, const Candidates& candidates);
-  /// Takes the nearest node that may be in the view and holds something that is offered. False if
-  /// none waits.
+  void start(const Frame& frame, const Candidates& candidates, Order order = Order::near_first);
+  /// Takes a node, the nearest if the order says so, that may be in the view and holds something
+  /// that is offered. False if none waits.
   bool next(Visit& visit);
   /// The node's children wait. Only for nodes that are no units.
   void open(const Visit& visit);
@@ -75,7 +77,8 @@ class NodeWalk {
   const Scene* scene_ = nullptr;
   const Frame* frame_ = nullptr;  // of the call of cull()
   Frustum frustum_;
-  std::vector<Item> heap_;
+  Order order_ = Order::near_first;
+  std::vector<Item> heap_;  // a stack, if any order will do
   std::vector<ObjectId> kept_;
   std::size_t handed_over_ = 0;  // of kept_
 
