@@ -157,8 +157,10 @@ std::pair<std::size_t, std::size_t> hidden_and_seen(const Scene& scene, ObjectId
   for (ObjectId id = screens; id < scene.object_count(); ++id) {
     std::size_t covered = 0;
     for (int corner = 0; corner < 8; ++corner) {
-      const glm::dvec4 at((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
-                          (corner & 4) != 0 ? 1 : -1, 1);
+      const Aabb& box = scene.mesh_of(id).bounds;
+      const glm::dvec4 at((corner & 1) != 0 ? box.max.x : box.min.x,
+                          (corner & 2) != 0 ? box.max.y : box.min.y,
+                          (corner & 4) != 0 ? box.max.z : box.min.z, 1);
       covered += meets(scene, screens - 1, eye, scene.objects[id].transform * at);
     }
     hidden += covered == 8;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "common/geometry/random.h"
 #include "common/scene/generators/generators.h"
@@ -71,7 +72,10 @@ Scene make_covered_bars(const CoveredBarsParameters& parameters) {
   constexpr glm::dvec3 half_bar(4.0, 0.2, 0.2);
   constexpr glm::dvec3 half_cover(half_bar.x + margin_m, half_bar.y + margin_m, 0.05);
   Scene scene;
-  scene.meshes = {cube_mesh(), dense_cube_mesh(parameters.min_triangles)};
+  // The bar's mesh has its true proportions, for those who cut meshes into parts.
+  Mesh bar = dense_cube_mesh(parameters.min_triangles);
+  for (glm::vec3& p : bar.positions) p *= glm::vec3(half_bar);
+  scene.meshes = {cube_mesh(), std::move(bar)};
   const glm::dmat3 turn = rotation({0.0, 0.0, 1.0}, parameters.angle_deg / 360.0 * tau);
   const auto place = [&](const glm::dvec3& half, const glm::dvec3& at) {
     return glm::dmat4x3(turn[0] * half.x, turn[1] * half.y, turn[2] * half.z, at);
@@ -88,7 +92,7 @@ Scene make_covered_bars(const CoveredBarsParameters& parameters) {
     scene.objects.push_back({0, place(half_cover, at), none_id});
   }
   for (std::uint32_t i = 0; i < count; ++i) {
-    scene.objects.push_back({1, place(half_bar, center(i)), none_id});
+    scene.objects.push_back({1, place(glm::dvec3(1.0), center(i)), none_id});
   }
   return scene;
 }
