@@ -146,11 +146,12 @@ void FitWorks::add_drawings() {
 
 void FitWorks::add_queries() {
   const Step background = draw(wall_objects(false));
-  const auto batches = [&](std::uint32_t queries, std::uint32_t boxes_each, double half_side_m) {
+  const auto batches = [&](std::uint32_t queries, std::uint32_t boxes_each, double half_side_m,
+                           std::uint32_t at_once = queries_at_once) {
     std::vector<Step> steps{background, {Kind::flush}};
     for (std::uint32_t i = 0; i < queries; ++i) {
       steps.push_back(ask(i * boxes_each, boxes_each, 9.0, half_side_m));
-      if ((i + 1) % queries_at_once == 0) {
+      if ((i + 1) % at_once == 0) {
         steps.insert(steps.end(), {{Kind::flush}, {Kind::read}});
       }
     }
@@ -158,6 +159,8 @@ void FitWorks::add_queries() {
   };
   works_.push_back({"64 small queries", batches(64, 1, 0.05)});
   works_.push_back({"256 small queries", batches(256, 1, 0.05)});
+  works_.push_back({"64 small queries, each read", batches(64, 1, 0.05, 1)});
+  works_.push_back({"256 small queries, each read", batches(256, 1, 0.05, 1)});
   works_.push_back({"64 queries of 8 boxes", batches(64, 8, 0.05)});
   works_.push_back({"16 large queries", batches(16, 1, 2.0)});
 
