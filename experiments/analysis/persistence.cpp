@@ -25,7 +25,8 @@ double turn_deg(const Pose& a, const Pose& b) {
   return std::acos(std::clamp((trace - 1.0) / 2.0, -1.0, 1.0)) * 180.0 / std::numbers::pi;
 }
 
-/// Level (at most 1) and drop (at least 0) of least squares for a given time. Returns the weighted squares.
+/// Level (at most 1) and drop (at least 0) of least squares for a given time. Returns the weighted
+/// squares.
 double fit_at(const std::vector<StillHidden>& after, double time, PersistenceFit& fit) {
   double w = 0.0, wx = 0.0, wy = 0.0, wxx = 0.0, wxy = 0.0, wyy = 0.0;
   for (std::size_t t = 1; t < after.size(); ++t) {
