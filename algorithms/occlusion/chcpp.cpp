@@ -19,10 +19,18 @@
 // Limits: an object whose boxes show although it does not is drawn. In a frame after a cut nothing
 //   is known: many rounds of questions, near first. Answers are read in the order of asking and
 //   never polled, so that they do not depend on time.
-// Beyond the sources: a hidden node whose box showed though all below it was hidden is opened
-// unasked
-//   until its next test, where the paper asks about it in every frame; of a walk without any memory
-//   the first unit is drawn unasked, since nothing can hide it.
+// Beyond the sources, because it was measured:
+//   - A hidden node whose box showed though all below it was hidden is opened unasked until its
+//   next
+//     test, where the paper asks about it in every frame.
+//   - Of many units that appear together, as after a cut, the nearer half is drawn and the rest
+//   asked
+//     about again: they may hide each other.
+//   - What nothing is known of is not asked about if hardly any answer of the frame was "hidden";
+//   and
+//     where that lasts, the method sleeps (sleep_pattern.h).
+//   - What is drawn is handed over now and then, so that the device rasterises while the walk goes
+//   on.
 // Sources: Mattausch, Bittner, Wimmer 2008, CHC++: Coherent Hierarchical Culling Revisited;
 // Zachmann,
 //   Computer-Graphik 2, SS 2012, slides 64-75.
