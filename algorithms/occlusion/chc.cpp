@@ -1,22 +1,22 @@
-// occlusion.chc: coherent hierarchical culling: while the device finds answers, the walk goes on
-// with what was visible in the last frame.
+// occlusion.chc: coherent hierarchical culling: while the device finds answers, the walk goes
+// on with what was visible in the last frame.
 //
-// Idea: a walk over a hierarchy, near first. Inner nodes that were visible in the last frame are
-//   opened unasked. Units that were visible are asked about and drawn at once, without waiting.
-//   Nodes that were hidden are asked about, and wait in a queue; when an answer is there, what
-//   shows is drawn or opened, what does not is hidden. A visible unit makes all above it visible
-//   (pull up); a node below which all is hidden is asked about as a whole in the next frame (pull
-//   down of what is hidden). The walk waits only if there is nothing else to do.
+// Idea: a walk over a hierarchy, near first. Inner nodes that were visible in the last frame
+//   are opened unasked. Units that were visible are asked about and drawn at once, without
+//   waiting. Nodes that were hidden are asked about, and wait in a queue; when an answer is
+//   there, what shows is drawn or opened, what does not is hidden. A visible unit makes all
+//   above it visible (pull up); a node below which all is hidden is asked about as a whole in
+//   the next frame (pull down of what is hidden). The walk waits only if there is nothing else
+//   to do.
 // Guarantee: image_exact (threshold_px = 0): each object in the view is drawn, or lies in a box
-// that
-//   was found without a sample behind what was drawn in this frame. A node that comes near the near
-//   plane is opened or drawn unasked.
-// Cost: a query for every visible unit and for every hidden node beside them, each with a change
-//   from drawing to asking and back.
-// Limits: where most is visible, it asks about everything for nothing. What answers arrive in time
-//   depends on the device: only the image is the same.
-// Sources: Bittner, Wimmer, Piringer, Purgathofer 2004, Coherent Hierarchical Culling; Zachmann,
-//   Computer-Graphik 2, SS 2012, slides 61-63.
+//   that was found without a sample behind what was drawn in this frame. A node that comes near
+//   the near plane is opened or drawn unasked.
+// Cost: a query for every visible unit and for every hidden node beside them, each with a
+//   change from drawing to asking and back.
+// Limits: where most is visible, it asks about everything for nothing. What answers arrive in
+//   time depends on the device: only the image is the same.
+// Sources: Bittner, Wimmer, Piringer, Purgathofer 2004, Coherent Hierarchical Culling;
+//   Zachmann, Computer-Graphik 2, SS 2012, slides 61-63.
 
 #include <vector>
 

@@ -2,38 +2,35 @@
 // tightened and spread over frames.
 //
 // Idea: what was visible in the last frame is drawn at once, near first. Nodes that were hidden
-// wait
-//   in a queue and are asked about in one go when the walk has nothing else to do, or when `batch`
-//   of them wait: by then most of what hides them is drawn, and the device changes from drawing to
-//   asking once. Nodes hidden for long share queries (multiquery.h). What was visible is asked
-//   about again only every `interval` frames, at first after a random part of that, so that not all
-//   of it is asked about in one frame; these questions are put behind the others, so that the
-//   device has something to do while the walk waits (`lazy`). Boxes of units are unions of small
-//   ones (tight_bounds.h), since what is falsely visible is drawn, which costs most of all.
-// Guarantee: image_exact (threshold_px = 0): in every frame each object in the view is drawn, or
-//   lies in a box that was found without a sample behind what was drawn in this frame. Answers of
-//   earlier frames are guesses. A node that comes near the near plane is opened or drawn unasked.
-// Cost: O(visible nodes + hidden nodes beside them) a frame; queries: 1 ÷ interval of the visible
-//   units and some groups of hidden nodes. The frame waits for an answer about as often as hidden
-//   nodes become visible one below the other.
-// Limits: an object whose boxes show although it does not is drawn. In a frame after a cut nothing
-//   is known: many rounds of questions, near first. Answers are read in the order of asking and
-//   never polled, so that they do not depend on time.
+//   wait in a queue and are asked about in one go when the walk has nothing else to do, or when
+//   `batch` of them wait: by then most of what hides them is drawn, and the device changes from
+//   drawing to asking once. Nodes hidden for long share queries (multiquery.h). What was
+//   visible is asked about again only every `interval` frames, at first after a random part of
+//   that, so that not all of it is asked about in one frame; these questions are put behind the
+//   others, so that the device has something to do while the walk waits (`lazy`). Boxes of
+//   units are unions of small ones (tight_bounds.h), since what is falsely visible is drawn,
+//   which costs most of all.
+// Guarantee: image_exact (threshold_px = 0): in every frame each object in the view is drawn,
+//   or lies in a box that was found without a sample behind what was drawn in this frame.
+//   Answers of earlier frames are guesses. A node that comes near the near plane is opened or
+//   drawn unasked.
+// Cost: O(visible nodes + hidden nodes beside them) a frame; queries: 1 ÷ interval of the
+//   visible units and some groups of hidden nodes. The frame waits for an answer about as often
+//   as hidden nodes become visible one below the other.
+// Limits: an object whose boxes show although it does not is drawn. In a frame after a cut
+//   nothing is known: many rounds of questions, near first. Answers are read in the order of
+//   asking and never polled, so that they do not depend on time.
 // Beyond the sources, because it was measured:
 //   - A hidden node whose box showed though all below it was hidden is opened unasked until its
-//   next
-//     test, where the paper asks about it in every frame.
+//     next test, where the paper asks about it in every frame.
 //   - Of many units that appear together, as after a cut, the nearer half is drawn and the rest
-//   asked
-//     about again: they may hide each other.
-//   - What nothing is known of is not asked about if hardly any answer of the frame was "hidden";
-//   and
-//     where that lasts, the method sleeps (sleep_pattern.h).
-//   - What is drawn is handed over now and then, so that the device rasterises while the walk goes
-//   on.
+//     asked about again: they may hide each other.
+//   - What nothing is known of is not asked about if hardly any answer of the frame was
+//     "hidden"; and where that lasts, the method sleeps (sleep_pattern.h).
+//   - What is drawn is handed over now and then, so that the device rasterises while the walk
+//     goes on.
 // Sources: Mattausch, Bittner, Wimmer 2008, CHC++: Coherent Hierarchical Culling Revisited;
-// Zachmann,
-//   Computer-Graphik 2, SS 2012, slides 64-75.
+//   Zachmann, Computer-Graphik 2, SS 2012, slides 64-75.
 
 #include <algorithm>
 

@@ -1,13 +1,15 @@
-// What occlusion.chc and occlusion.chcpp share: a front-to-back walk over a hierarchy of queries,
-// in which the method decides node by node whether to open, draw or ask about it.
+// What occlusion.chc and occlusion.chcpp share: a front-to-back walk over a hierarchy of
+// queries, in which the method decides node by node whether to open, draw or ask about it.
 //
-// Idea: what waits is a heap by distance from the eye. A node that is surely outside of the view is
-//   dropped with all below it; planes that a node is surely inside of are not asked about again.
-// Guarantee: nothing is drawn twice in a frame and nothing that was not offered; objects whose box
-//   is not valid are drawn. What the method opens or draws is complete.
+// Idea: what waits is a heap by distance from the eye. A node that is surely outside of the
+//   view is dropped with all below it; planes that a node is surely inside of are not asked
+//   about again.
+// Guarantee: nothing is drawn twice in a frame and nothing that was not offered; objects whose
+//   box is not valid are drawn. What the method opens or draws is complete.
 // Cost: O(log n) for each node that waits, up to six plane tests a node.
 // Limits: nodes that overlap are ordered by their nearest points only.
-// Sources: Bittner et al. 2004, section 4; Assarsson and Moeller 2000 (planes that need no test).
+// Sources: Bittner et al. 2004, section 4; Assarsson and Moeller 2000 (planes that need no
+//   test).
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,8 @@
 // When a method that asks what is hidden does not ask, because hardly anything is.
 //
 // Idea: after a few frames in a row in which hardly anything was hidden, it sleeps for a while,
-// tries
-//   one frame, and sleeps longer if that was in vain, too. Much that is new in the view wakes it.
+//   tries one frame, and sleeps longer if that was in vain, too. Much that is new in the view
+//   wakes it.
 // Guarantee: none needed: a method that sleeps draws everything in the view.
 // Cost: none.
 // Limits: what comes to be hidden without anything new is noticed only when the pause ends.

@@ -1,16 +1,16 @@
-// oracle: keeps exactly what truth says is visible. The upper anchor of every chart: what a perfect
-// method of this granularity could save.
+// oracle: keeps exactly what truth says is visible. The upper anchor of every chart: what a
+// perfect method of this granularity could save.
 //
-// Idea: the visible set of each frame is prepared by ray casts before anything is timed; culling is
-//   its intersection with the candidates. At the level of nodes all units of a hierarchy
-//   (query_hierarchy.h) are kept that hold something visible, with all in them that may be in the
-//   view, near first: what a method could keep at best that asks about these units, and asks
-//   nothing.
+// Idea: the visible set of each frame is prepared by ray casts before anything is timed;
+//   culling is its intersection with the candidates. At the level of nodes all units of a
+//   hierarchy (query_hierarchy.h) are kept that hold something visible, with all in them that
+//   may be in the view, near first: what a method could keep at best that asks about these
+//   units, and asks nothing.
 // Guarantee: image_exact. Truth is sampled (at the pixel centres and at jittered positions), so
 //   what falls between all samples is left out.
 // Cost: O(1) for the whole scene, O(visible + what is kept) at node level. For a part of it
-// O(visible + candidates) at object level, and
-//   O(candidates * log(visible)) at triangle level.
+//   O(visible + candidates) at object level, and O(candidates * log(visible)) at triangle
+//   level.
 // Limits: cannot be had outside of the lab; knows only the path for which truth was prepared.
 // Source: this lab.
 

@@ -1,13 +1,13 @@
 // A bounding-volume hierarchy whose nodes are what is asked about and what is drawn.
 //
-// Idea: below some amount of geometry a question costs more than what it may save. So the walk ends
-//   at units: the first nodes from the root that hold at most `leaf_triangles` triangles, where an
-//   object's draw counts as `draw_triangles` triangles, and leaves of the tree, which hold one
-//   object if objects are heavy. Methods that share it, and the ideal that they are measured
-//   against, draw the same units.
+// Idea: below some amount of geometry a question costs more than what it may save. So the walk
+//   ends at units: the first nodes from the root that hold at most `leaf_triangles` triangles,
+//   where an object's draw counts as `draw_triangles` triangles, and leaves of the tree, which
+//   hold one object if objects are heavy. Methods that share it, and the ideal that they are
+//   measured against, draw the same units.
 // Guarantee: every object that is shown is in exactly one unit, or in unplaced().
-// Cost: build that of the Bvh. Motion: refit, O(movers and their ancestors). Objects that come or
-//   go: O(nodes) in that frame; nodes that then hold other objects than before are told.
+// Cost: build that of the Bvh. Motion: refit, O(movers and their ancestors). Objects that come
+//   or go: O(nodes) in that frame; nodes that then hold other objects than before are told.
 // Limits: units of refitted trees get larger as objects mix.
 // Sources: Bittner et al. 2004, 4.1; Mattausch et al. 2008, 3.
 #pragma once
