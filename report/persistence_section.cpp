@@ -65,7 +65,6 @@ Fields row_of(const PersistenceRow& row) {
              : format_number(std::abs(counts.after[t].share().value -
                                       Persistence::formula(static_cast<std::uint32_t>(t)))) +
                    " [t = " + std::to_string(t) + "]{.interval}";
-  const PersistenceFit fit = counts.fit();
   fields.values["fit"] = text_of(counts.fit());
   return fields;
 }

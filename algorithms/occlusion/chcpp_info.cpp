@@ -1,5 +1,7 @@
 #include "algorithms/occlusion/chcpp_info.h"
 
+#include "algorithms/occlusion/tight_bounds.h"
+
 namespace vislab::occlusion_culling {
 
 CullerInfo chcpp_info() {
@@ -48,8 +50,8 @@ CullerInfo chcpp_info() {
                              "units are asked about by the boxes of their parts"),
       ParameterSpec::real("sigma", 1.4, 1.0, 100.0, "", build,
                           "the parts' boxes have at most so many times the surface of the one box"),
-      ParameterSpec::integer("max_boxes", 16, 1, 4096, "boxes", build,
-                             "a unit has at most so many boxes"),
+      ParameterSpec::integer("max_boxes", 16, 1, TightBounds::most_boxes, "boxes", build,
+                             "a unit has at most so many boxes, and fewer if it is light"),
       ParameterSpec::integer(
           "threshold_px", 0, 0, 1'000'000, "pixels", query,
           "nodes whose boxes show no more pixels than this are left out; above 0 "

@@ -1,5 +1,7 @@
 #include "algorithms/occlusion/node_boxes.h"
 
+#include <algorithm>
+
 #include "common/geometry/frustum.h"
 #include "common/render/query_bounds.h"
 
@@ -16,7 +18,6 @@ void NodeBoxes::build(const Scene& scene, const std::optional<TightBounds::Limit
   tight_ = limits.has_value();
   if (!tight_) return;
   bounds_.build(scene, *limits);
-  least_work_ = std::uint64_t{limits->max_boxes} * box_triangles * worth_boxes;
 }
 
 std::uint32_t NodeBoxes::append(const Frame& frame, const QueryHierarchy& hierarchy,
@@ -27,11 +28,14 @@ std::uint32_t NodeBoxes::append(const Frame& frame, const QueryHierarchy& hierar
   const Aabb whole = enlarged_for_query(frame.camera, frame.viewport, hierarchy.node(node).box);
   if (!askable(whole)) return 0;
   const std::size_t first = out.size();
-  if (!tight_ || !hierarchy.is_unit(node) || hierarchy.work(node) < least_work_) {
+  const std::uint64_t worth = hierarchy.work(node) / (box_triangles * worth_boxes);
+  if (!tight_ || !hierarchy.is_unit(node) || worth < 2) {
     out.push_back(whole);
     return 1;
   }
-  bounds_.append(hierarchy.structure(), node, frame.objects, out);
+  const auto most =
+      static_cast<std::uint32_t>(std::min<std::uint64_t>(worth, TightBounds::most_boxes));
+  bounds_.append(hierarchy.structure(), node, frame.objects, most, out);
   for (std::size_t i = first; i < out.size(); ++i) {
     out[i] = enlarged_for_query(frame.camera, frame.viewport, out[i]);
     if (!askable(out[i])) {

@@ -12,11 +12,11 @@ namespace vislab::occlusion_culling {
 
 class NodeBoxes {
  public:
-  /// Without limits a node has one box; so do units so light that many boxes cost about as much as
-  /// they do. The scene outlives this.
+  /// Without limits a node has one box. The scene outlives this.
   void build(const Scene& scene, const std::optional<TightBounds::Limits>& limits);
 
-  /// Appends the boxes to ask about for a node, enlarged as devices need it. Returns how many. None
+  /// Appends the boxes to ask about for a node, enlarged as devices need it: one for an inner node,
+  /// several for a unit, as long as they cost much less than to draw it. Returns how many. None
   /// if nothing may be concluded from an answer, because the node comes too near to the eye.
   std::uint32_t append(const Frame& frame, const QueryHierarchy& hierarchy,
                        QueryHierarchy::NodeIndex node, std::vector<Aabb>& out) const;
@@ -25,7 +25,6 @@ class NodeBoxes {
 
  private:
   bool tight_ = false;
-  std::uint64_t least_work_ = 0;  // of units with several boxes
   TightBounds bounds_;
 };
 

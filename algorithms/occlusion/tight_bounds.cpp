@@ -109,11 +109,14 @@ class Division {
 /// Divides pieces until no piece can be, and appends the best division's boxes.
 class TightBounds::Divider {
  public:
-  Divider(const TightBounds& bounds, const ObjectsView& objects, const SpatialStructure* tree)
-      : bounds_(&bounds), objects_(&objects), tree_(tree) {}
+  Divider(const TightBounds& bounds, const ObjectsView& objects, const SpatialStructure* tree,
+          std::uint32_t max_boxes)
+      : bounds_(&bounds), objects_(&objects), tree_(tree), limits_(bounds.limits_) {
+    limits_.max_boxes = std::min(limits_.max_boxes, max_boxes);
+  }
 
   std::uint32_t append(const Piece& whole, std::vector<Aabb>& out) const {
-    Division division(bounds_->limits_, whole.box);
+    Division division(limits_, whole.box);
     division.start(whole);
     std::array<Piece, most_boxes> parts;
     while (Piece* piece = division.largest()) {
@@ -171,6 +174,7 @@ class TightBounds::Divider {
   const TightBounds* bounds_;
   const ObjectsView* objects_;
   const SpatialStructure* tree_;
+  Limits limits_;
 };
 
 void TightBounds::build(const Scene& scene, const Limits& limits) {
@@ -190,15 +194,16 @@ std::uint32_t TightBounds::append(ObjectId object, const ObjectsView& objects,
     out.push_back(objects.bounds[object]);
     return 1;
   }
-  const Divider divider(*this, objects, nullptr);
+  const Divider divider(*this, objects, nullptr, most_boxes);
   return divider.append(divider.object(object), out);
 }
 
 std::uint32_t TightBounds::append(const SpatialStructure& tree, SpatialStructure::NodeIndex node,
-                                  const ObjectsView& objects, std::vector<Aabb>& out) const {
+                                  const ObjectsView& objects, std::uint32_t max_boxes,
+                                  std::vector<Aabb>& out) const {
   const Aabb& box = tree.nodes()[node].box;
   if (box.empty()) return 0;
-  return Divider(*this, objects, &tree)
+  return Divider(*this, objects, &tree, max_boxes)
       .append({.box = box, .kind = Piece::Kind::node, .index = node}, out);
 }
 

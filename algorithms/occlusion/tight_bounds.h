@@ -53,8 +53,10 @@ class TightBounds {
   /// Appends boxes (world) that hold all objects at and below a node of a structure over the
   /// objects' present boxes. Returns how many; none for a node without objects. No allocation once
   /// `out` is long enough.
+  /// `max_boxes`: at most so many if that is fewer than in Limits; at least 1.
   std::uint32_t append(const SpatialStructure& tree, SpatialStructure::NodeIndex node,
-                       const ObjectsView& objects, std::vector<Aabb>& out) const;
+                       const ObjectsView& objects, std::uint32_t max_boxes,
+                       std::vector<Aabb>& out) const;
 
   std::size_t bytes() const;
 

@@ -195,9 +195,14 @@ TEST(TightBounds, ANodeIsBoundedByItsChildrenItsObjectsAndTheirParts) {
   for (SpatialStructure::NodeIndex node = 0; node < tree.nodes().size(); ++node) {
     if (tree.objects_below(node).empty()) continue;
     boxes.clear();
-    const std::uint32_t count = bounds.append(tree, node, state.view(), boxes);
+    const std::uint32_t count = bounds.append(tree, node, state.view(), 16, boxes);
     ASSERT_EQ(count, boxes.size());
     EXPECT_LE(count, 16U);
+    std::vector<Aabb> few;
+    EXPECT_LE(bounds.append(tree, node, state.view(), 3, few), 3U);
+    for (const ObjectId object : tree.objects_below(node)) {
+      expect_held(scene, object, state.view(), few);
+    }
     if (count > 1) ++divided;
     EXPECT_LE(surface_of(boxes), 1.4 * half_area(tree.nodes()[node].box) * (1.0 + 1e-12));
     for (const ObjectId object : tree.objects_below(node)) {
@@ -208,7 +213,7 @@ TEST(TightBounds, ANodeIsBoundedByItsChildrenItsObjectsAndTheirParts) {
   // Once the list is long enough, nothing is allocated for it.
   boxes.clear();
   const Aabb* const before = boxes.data();
-  bounds.append(tree, SpatialStructure::root, state.view(), boxes);
+  bounds.append(tree, SpatialStructure::root, state.view(), 16, boxes);
   EXPECT_EQ(boxes.data(), before);
 }
 
