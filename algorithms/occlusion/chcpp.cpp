@@ -126,7 +126,7 @@ class Chcpp : public ICuller {
     NodeWalk::Visit visit;
     if (asleep) {
       while (walk_.next(visit)) take_unasked(visit);
-      sleep_.note_slept(units_new_ * new_part >= units_drawn_now_);
+      sleep_.note_slept(units_new_ > 0 && units_new_ * new_part >= units_drawn_now_);
       units_drawn_ += units_drawn_now_;
       walk_.hand_over(out);
       return;

@@ -48,13 +48,15 @@ std::vector<ParameterSpec> osmesa_parameters() {
 
 CullerSpec parse_one(std::string_view text) {
   std::vector<CullerSpec> stages;
+  std::string wrong;
   try {
     stages = parse_chain(text);
-  } catch (const InputError&) {  // it speaks of cullers
+  } catch (const InputError& error) {
+    wrong = std::string(" (") + error.what() + ")";
   }
   if (stages.size() != 1) {
-    throw InputError("device '" + std::string(text) +
-                     "': a device is written name or name[parameter=value,...], such as "
+    throw InputError("device '" + std::string(text) + "'" + wrong +
+                     ": a device is written name or name[parameter=value,...], such as "
                      "modelled[preset=gpu,latency_us=500]");
   }
   return stages.front();

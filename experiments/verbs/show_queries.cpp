@@ -1,8 +1,11 @@
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
+#include <thread>
 
 #include "common/render/modelled_gpu.h"
 #include "common/scene/error.h"
+#include "experiments/calibration/device_fit.h"
 #include "experiments/devices/device_spec.h"
 #include "experiments/matrix/resolution.h"
 #include "experiments/run/path_run.h"
@@ -48,7 +51,7 @@ RecordedFrame record(const Lab& lab, const std::string& name, const Scene& scene
 
 DeviceSpec device_of(const ShowCall& call, QueryPicture picture) {
   const char* const usual = picture == QueryPicture::timeline ? "modelled[preset=gpu]" : "osmesa";
-  DeviceSpec spec = parse_device(call.draw.empty() ? usual : call.draw);
+  DeviceSpec spec = parse_device(call.draw.value_or(usual));
   if (spec.kind == DeviceSpec::Kind::none) {
     throw InputError("--draw none: a picture of queries needs a device to ask");
   }
@@ -58,6 +61,17 @@ DeviceSpec device_of(const ShowCall& call, QueryPicture picture) {
                      "modelled[preset=gpu]");
   }
   return spec;
+}
+
+/// Dials that are not named are the preset's, or those that OSMesa on this machine is fitted with.
+GpuModel preset_model_of(const DeviceSpec& spec) {
+  if (spec.preset.empty()) return {};
+  if (!spec.is_fitted()) return gpu_preset(spec.preset).model;
+  const int threads =
+      spec.drawing_threads(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+  ::setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 1);
+  std::cerr << "fitting the modelled device to OSMesa\n";
+  return fit_device(threads).model;
 }
 
 }  // namespace
@@ -76,7 +90,7 @@ int show_queries(const Lab& lab, const ShowCall& call) {
   path.frames.resize(last + 1);
   SceneState state(scene);
   std::vector<RecordedFrame> rows;
-  const GpuModel model = spec.preset.empty() ? GpuModel{} : gpu_preset(spec.preset).model;
+  const GpuModel model = preset_model_of(spec);
   for (const std::string& name : call.cullers) {
     const std::unique_ptr<RenderDevice> device = make_device(spec, model);
     rows.push_back(record(lab, name, scene, path, viewport, *device, state));

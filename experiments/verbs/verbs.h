@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,9 +51,9 @@ struct ShowCall {
   std::string resolution = "512x512";
   int frame = 0;
   std::filesystem::path output;
-  std::string depth_complexity;  // instead of a culler: rays, polygons or transparent
-  std::string queries;           // with cullers: strip, boxes or timeline
-  std::string draw;              // with queries: a device; empty: one that suits the picture
+  std::string depth_complexity;     // instead of a culler: rays, polygons or transparent
+  std::string queries;              // with cullers: strip, boxes or timeline
+  std::optional<std::string> draw;  // with queries: a device; none: one that suits the picture
 };
 int show(const Lab& lab, const ShowCall& call);
 /// A heat map of a frame by that definition of depth complexity; prints the figures of all.
