@@ -88,6 +88,13 @@ Result contest(const BenchCase& bench_case, benchmark::State& state) {
   return result;
 }
 
+/// What a case's bar is put to.
+double held_figure(const BenchCase& bench_case, const Result& result) {
+  return bench_case.measure ? result.value : result.ratio.value;
+}
+
+const char* name_of(Bar::Side side) { return side == Bar::Side::at_most ? "at most" : "at least"; }
+
 /// Prints nothing: results are printed by run_benchmarks.
 class SilentReporter : public benchmark::BenchmarkReporter {
  public:
@@ -108,6 +115,11 @@ void print_json(const BenchCase& bench_case, const Result& result) {
     line["ratio_high"] = result.ratio.high;
   }
   line["equal"] = result.equal;
+  if (bench_case.bar.side != Bar::Side::none) {
+    line["bar"] = bench_case.bar.value;
+    line["bar_side"] = name_of(bench_case.bar.side);
+    line["held"] = bench_case.bar.held_by(held_figure(bench_case, result));
+  }
   std::printf("%s\n", line.dump().c_str());
 }
 
@@ -118,7 +130,12 @@ void print_row(const BenchCase& bench_case, const Result& result) {
     std::printf("%6.3f [%.3f, %.3f] of the time of %s, ", result.ratio.value, result.ratio.low,
                 result.ratio.high, bench_case.against.c_str());
   }
-  std::printf("%s\n", result.equal ? "equal" : "NOT EQUAL");
+  std::printf("%s", result.equal ? "equal" : "NOT EQUAL");
+  if (bench_case.bar.side != Bar::Side::none) {
+    std::printf(", bar %s %g: %s", name_of(bench_case.bar.side), bench_case.bar.value,
+                bench_case.bar.held_by(held_figure(bench_case, result)) ? "held" : "NOT HELD");
+  }
+  std::printf("\n");
 }
 
 }  // namespace

@@ -39,6 +39,19 @@ struct Measurement {
   bool equal = false;  // were the results on the way what they had to be?
 };
 
+/// What a case is held to: a contest's ratio, a measurement's value.
+struct Bar {
+  enum class Side { none, at_most, at_least };
+  Side side = Side::none;
+  double value = 0.0;
+
+  static Bar at_most(double value) { return {Side::at_most, value}; }
+  static Bar at_least(double value) { return {Side::at_least, value}; }
+  bool held_by(double figure) const {
+    return side == Side::none || (side == Side::at_most ? figure <= value : figure >= value);
+  }
+};
+
 struct BenchCase {
   std::string bench;    // what is measured: a culler's name, or "truth"
   std::string name;     // the case
@@ -48,12 +61,14 @@ struct BenchCase {
   std::function<std::unique_ptr<Contest>()> make;
   /// Instead of a contest: takes the figure, once.
   std::function<Measurement()> measure = {};
+  Bar bar = {};
 };
 
 /// Runs all cases that the flags select and prints a table, or with `--json` one object a line:
 /// bench, case, value, unit, against, ratio, ratio_low, ratio_high, equal; measurements are without
-/// against and the ratios. Returns the exit code: 0; 1 if results differed; 2 for unknown flags or
-/// wrong input.
+/// against and the ratios. Cases with a bar also say bar, bar_side ("at most" or "at least") and
+/// held. Returns the exit code: 0; 1 if results differed; 2 for unknown flags or wrong input. A bar
+/// that is not held does not count there: on a busy machine that is no fault of the program.
 int run_benchmarks(int argc, char** argv, const std::vector<BenchCase>& cases);
 
 }  // namespace vislab
