@@ -43,9 +43,7 @@ CullerInfo describe() {
       ParameterSpec::integer("batch", 20, 1, 1000, "questions", ParameterSpec::Stage::query,
                              "how many questions are asked together; few: many changes of state "
                              "and waits; many: objects of one batch do not hide each other"),
-      ParameterSpec::integer("threshold_px", 0, 0, 1'000'000, "pixels", ParameterSpec::Stage::query,
-                             "objects whose box shows no more pixels than this are left out; above "
-                             "0 small things vanish from the image")};
+      threshold_parameter()};
   info.cost =
       "O(n log n) for n candidates; a query for each object in the view; a wait for each batch of "
       "objects that were not seen before";
@@ -58,8 +56,9 @@ CullerInfo describe() {
 
 class Batched : public ICuller {
  public:
-  Batched(std::size_t batch, std::uint64_t threshold_px)
-      : batch_(batch), threshold_px_(threshold_px) {
+  explicit Batched(const ParameterValues& values)
+      : batch_(static_cast<std::size_t>(values.integer("batch"))),
+        threshold_px_(static_cast<std::uint64_t>(values.integer("threshold_px"))) {
     info_ = describe();
     if (threshold_px_ > 0) info_.guarantee = Guarantee::approximate;
   }
@@ -172,11 +171,8 @@ class Batched : public ICuller {
 namespace cullers {
 
 CullerEntry occlusion_batched() {
-  return {describe(), [](const ParameterValues& values) {
-            return std::make_unique<Batched>(
-                static_cast<std::size_t>(values.integer("batch")),
-                static_cast<std::uint64_t>(values.integer("threshold_px")));
-          }};
+  return {describe(),
+          [](const ParameterValues& values) { return std::make_unique<Batched>(values); }};
 }
 
 }  // namespace cullers

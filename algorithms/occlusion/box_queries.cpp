@@ -26,13 +26,20 @@ BoxPlace BoxView::place_inside(const Aabb& box, Aabb& asked) const {
   return touches_near_region(camera_, asked) ? BoxPlace::unaskable : BoxPlace::askable;
 }
 
-double BoxView::nearness(const Aabb& box) const {
+double nearness(const Camera& camera, const Aabb& box) {
   if (!box.valid()) return 0.0;
-  if (camera_.lens.projection == Projection::perspective) {
-    return distance_squared(box, camera_.pose.eye);
+  if (camera.lens.projection == Projection::perspective) {
+    return distance_squared(box, camera.pose.eye);
   }
-  const glm::dvec3 reach = glm::abs(camera_.pose.back) * box.half_size();
-  return camera_.planar_depth(box.center()) - (reach.x + reach.y + reach.z);
+  const glm::dvec3 reach = glm::abs(camera.pose.back) * box.half_size();
+  return camera.planar_depth(box.center()) - (reach.x + reach.y + reach.z);
+}
+
+ParameterSpec threshold_parameter() {
+  return ParameterSpec::integer(
+      "threshold_px", 0, 0, 1'000'000, "pixels", ParameterSpec::Stage::query,
+      "objects whose box shows no more pixels than this are left out; above 0 small things vanish "
+      "from the image");
 }
 
 RenderDevice& required_device(std::string_view culler, const BuildContext& context) {

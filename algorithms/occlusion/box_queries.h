@@ -38,16 +38,19 @@ class BoxView {
   /// The same for what is known to be in the view: never outside.
   BoxPlace place_inside(const Aabb& box, Aabb& asked) const;
 
-  /// The key of front-to-back orders, smaller is nearer: squared distance of the box from the eye,
-  /// metres squared; for an orthographic camera its least depth, metres. Never NaN: broken boxes
-  /// come at 0. No box in this box is nearer.
-  double nearness(const Aabb& box) const;
-
  private:
   Camera camera_;
   Viewport viewport_;
   Frustum frustum_;
 };
+
+/// The key of front-to-back orders, smaller is nearer: squared distance of the box from the eye,
+/// metres squared; for an orthographic camera its least depth, metres. Never NaN: broken boxes come
+/// at 0. No box in this box is nearer.
+double nearness(const Camera& camera, const Aabb& box);
+
+/// The parameter that says from how many samples on something counts as visible.
+ParameterSpec threshold_parameter();
 
 /// The context's device. Throws InputError that names the culler if there is none.
 RenderDevice& required_device(std::string_view culler, const BuildContext& context);

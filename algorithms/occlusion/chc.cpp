@@ -20,11 +20,11 @@
 
 #include <vector>
 
+#include "algorithms/occlusion/box_queries.h"
 #include "algorithms/occlusion/node_boxes.h"
 #include "algorithms/occlusion/node_memory.h"
 #include "algorithms/occlusion/node_walk.h"
 #include "common/culler/registry.h"
-#include "common/scene/error.h"
 
 namespace vislab {
 namespace {
@@ -77,11 +77,7 @@ class Chc : public ICuller {
   const CullerInfo& info() const override { return info_; }
 
   void build(const Scene& scene, const BuildContext& context) override {
-    if (context.device == nullptr) {
-      throw InputError(
-          "occlusion.chc: there is no graphics device to ask; it needs a run that draws");
-    }
-    device_ = context.device;
+    device_ = &occlusion_culling::required_device(info_.name, context);
     walk_.build(scene);
     boxes_of_.build(scene, {});
     reset(0);

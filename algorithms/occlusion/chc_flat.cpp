@@ -43,9 +43,7 @@ CullerInfo describe() {
       ParameterSpec::integer("flush_every", 8, 1, 1000, "questions", ParameterSpec::Stage::query,
                              "after how many questions they are handed over to the device; few: "
                              "each costs more; many: answers come late"),
-      ParameterSpec::integer("threshold_px", 0, 0, 1'000'000, "pixels", ParameterSpec::Stage::query,
-                             "objects whose box shows no more pixels than this are left out; above "
-                             "0 small things vanish from the image")};
+      threshold_parameter()};
   info.cost =
       "O(n log n) for n candidates; a query for each object in the view, and up to two changes of "
       "state for each";
@@ -59,8 +57,9 @@ CullerInfo describe() {
 
 class ChcFlat : public ICuller {
  public:
-  ChcFlat(std::size_t flush_every, std::uint64_t threshold_px)
-      : flush_every_(flush_every), threshold_px_(threshold_px) {
+  explicit ChcFlat(const ParameterValues& values)
+      : flush_every_(static_cast<std::size_t>(values.integer("flush_every"))),
+        threshold_px_(static_cast<std::uint64_t>(values.integer("threshold_px"))) {
     info_ = describe();
     if (threshold_px_ > 0) info_.guarantee = Guarantee::approximate;
   }
@@ -153,11 +152,8 @@ class ChcFlat : public ICuller {
 namespace cullers {
 
 CullerEntry occlusion_chc_flat() {
-  return {describe(), [](const ParameterValues& values) {
-            return std::make_unique<ChcFlat>(
-                static_cast<std::size_t>(values.integer("flush_every")),
-                static_cast<std::uint64_t>(values.integer("threshold_px")));
-          }};
+  return {describe(),
+          [](const ParameterValues& values) { return std::make_unique<ChcFlat>(values); }};
 }
 
 }  // namespace cullers

@@ -20,35 +20,34 @@
 // Limits: an object whose boxes show although it does not is drawn. In a frame after a cut
 //   nothing is known: many rounds of questions, near first. Answers are read in the order of
 //   asking and never polled, so that they do not depend on time.
-// Beyond the sources, because it was measured:
+// Beyond the sources, because it was measured, each with a switch:
 //   - A hidden node whose box showed though all below it was hidden is opened unasked until its
-//     next test, where the paper asks about it in every frame.
+//     next test, where the paper asks about it in every frame (`open_unasked`).
 //   - Of many units that appear together, as after a cut, the nearer half is drawn and the rest
-//     asked about again: they may hide each other.
+//     asked about again: they may hide each other (`reask`).
 //   - What nothing is known of is not asked about if hardly any answer of the frame was
-//     "hidden"; and where that lasts, the method sleeps (sleep_pattern.h).
+//     "hidden" (`skip_vain`); and where that lasts, the method sleeps (`sleep`, sleep_pattern.h).
 //   - What is drawn is handed over now and then, so that the device rasterises while the walk
-//     goes on.
+//     goes on (`hand_over_triangles`).
 // Sources: Mattausch, Bittner, Wimmer 2008, CHC++: Coherent Hierarchical Culling Revisited;
 //   Zachmann, Computer-Graphik 2, SS 2012, slides 64-75.
 
 #include <algorithm>
 
+#include "algorithms/occlusion/box_queries.h"
 #include "algorithms/occlusion/chcpp_info.h"
-#include "algorithms/occlusion/multiquery.h"
+#include "algorithms/occlusion/hidden_queue.h"
 #include "algorithms/occlusion/node_boxes.h"
 #include "algorithms/occlusion/node_memory.h"
 #include "algorithms/occlusion/node_walk.h"
 #include "algorithms/occlusion/sleep_pattern.h"
 #include "common/culler/registry.h"
 #include "common/geometry/random.h"
-#include "common/scene/error.h"
 
 namespace vislab {
 namespace {
 
-using occlusion_culling::group_multiqueries;
-using occlusion_culling::MultiqueryCandidate;
+using occlusion_culling::HiddenQueue;
 using occlusion_culling::MultiqueryCost;
 using occlusion_culling::MultiqueryModel;
 using occlusion_culling::NodeBoxes;
@@ -58,23 +57,35 @@ using occlusion_culling::Persistence;
 using occlusion_culling::SleepPattern;
 using occlusion_culling::TightBounds;
 
+/// By what nodes share queries; nothing if they do not.
+std::optional<MultiqueryModel> sharing(const ParameterValues& values) {
+  if (!values.boolean("multiqueries")) return std::nullopt;
+  return MultiqueryModel{
+      values.choice("cost_model") == "paper" ? MultiqueryCost::paper : MultiqueryCost::slides,
+      values.real("box_cost")};
+}
+
 class Chcpp : public ICuller {
  public:
   explicit Chcpp(const ParameterValues& values)
       : info_(occlusion_culling::chcpp_info()),
         walk_(static_cast<std::uint32_t>(values.integer("leaf_triangles"))),
+        hidden_(sharing(values), values.choice("persistence") == "formula"
+                                     ? Persistence::Kind::formula
+                                     : Persistence::Kind::measured),
         batch_(static_cast<std::size_t>(values.integer("batch"))),
         lazy_(values.boolean("lazy")),
         interval_(static_cast<std::uint32_t>(values.integer("interval"))),
         random_(values.choice("retest") == "random"),
-        multiqueries_(values.boolean("multiqueries")),
-        persistence_(values.choice("persistence") == "formula" ? Persistence::Kind::formula
-                                                               : Persistence::Kind::measured),
-        threshold_px_(static_cast<std::uint64_t>(values.integer("threshold_px"))) {
-    model_.cost =
-        values.choice("cost_model") == "paper" ? MultiqueryCost::paper : MultiqueryCost::slides;
+        threshold_px_(static_cast<std::uint64_t>(values.integer("threshold_px"))),
+        may_sleep_(values.boolean("sleep")),
+        reask_(values.boolean("reask")),
+        open_unasked_(values.boolean("open_unasked")),
+        skip_vain_(values.boolean("skip_vain")),
+        hand_over_triangles_(static_cast<std::uint64_t>(values.integer("hand_over_triangles"))) {
     if (values.boolean("tight_bounds")) {
-      tight_ = {values.real("sigma"), static_cast<std::uint32_t>(values.integer("max_boxes"))};
+      tight_ = {values.real("sigma"), static_cast<std::uint32_t>(values.integer("max_boxes")),
+                values.choice("division") == "finest"};
     }
     if (threshold_px_ > 0) info_.guarantee = Guarantee::approximate;
   }
@@ -82,11 +93,7 @@ class Chcpp : public ICuller {
   const CullerInfo& info() const override { return info_; }
 
   void build(const Scene& scene, const BuildContext& context) override {
-    if (context.device == nullptr) {
-      throw InputError(
-          "occlusion.chcpp: there is no graphics device to ask; it needs a run that draws");
-    }
-    device_ = context.device;
+    device_ = &occlusion_culling::required_device(info_.name, context);
     walk_.build(scene);
     boxes_of_.build(scene, tight_);
     reset(0);
@@ -95,7 +102,7 @@ class Chcpp : public ICuller {
   void reset(std::uint64_t seed) override {
     walk_.reset();
     memory_.reset(walk_.hierarchy().node_count());
-    persistence_.reset();
+    hidden_.reset();
     chance_ = Random(seed);
     sleep_ = {};
   }
@@ -107,16 +114,17 @@ class Chcpp : public ICuller {
 
   void cull(const Frame& frame, const Candidates& candidates, DrawSink& out) override {
     frame_ = &frame;
-    memory_.start(frame, walk_.hierarchy());
+    const bool first_call = memory_.start(frame, walk_.hierarchy());
     // Without any memory nothing is known to be visible; what is nearest is.
     blind_ = !memory_.was_visited(SpatialStructure::root);
-    const bool asleep = sleep_.asleep(frame.index);
+    const bool asleep = may_sleep_ && sleep_.asleep(frame.index);
+    frames_slept_ += asleep && first_call ? 1 : 0;
     walk_.start(frame, candidates, asleep ? NodeWalk::Order::any : NodeWalk::Order::near_first);
-    for (Queue* queue : {&hidden_, &due_}) queue->clear();
+    hidden_.start();
+    due_.clear();
     boxes_.clear();
-    asked_.clear();
     retests_.clear();
-    answers_ = 0;
+    answer_count_ = 0;
     found_hidden_ = 0;
     drawn_work_ = 0;
     hidden_work_ = 0;
@@ -134,12 +142,12 @@ class Chcpp : public ICuller {
     for (;;) {
       while (walk_.next(visit)) {
         decide(visit, out);
-        if (hidden_.size() < batch_) continue;
+        if (hidden_.waiting() < batch_) continue;
         read_answers(out);
         ask(out);
       }
-      if (asked_.empty() && hidden_.empty()) break;
-      if (asked_.empty()) ask(out);
+      if (!hidden_.under_way() && hidden_.waiting() == 0) break;
+      if (!hidden_.under_way()) ask(out);
       read_answers(out);
     }
     finish_retests(out);
@@ -148,43 +156,36 @@ class Chcpp : public ICuller {
   }
 
   std::size_t bytes() const override {
-    return walk_.bytes() + boxes_of_.bytes() + memory_.bytes() +
-           (hidden_.capacity() + due_.capacity() + found_.capacity()) * sizeof(Entry) +
-           (asked_.capacity() + retests_.capacity()) * sizeof(Asked) +
-           members_.capacity() * sizeof(Entry) +
-           (boxes_.capacity() + group_boxes_.capacity()) * sizeof(Aabb) +
-           candidates_.capacity() * sizeof(MultiqueryCandidate) +
-           ends_.capacity() * sizeof(std::uint32_t);
+    return walk_.bytes() + boxes_of_.bytes() + memory_.bytes() + hidden_.bytes() +
+           (due_.capacity() + found_.capacity()) * sizeof(Entry) +
+           answers_.capacity() * sizeof(HiddenQueue::Answer) +
+           retests_.capacity() * sizeof(Retest) + boxes_.capacity() * sizeof(Aabb);
   }
 
   Counters counters() const override {
-    return {{"queries", queries_},
-            {"multiqueries", groups_},
-            {"requeries", requeries_},
+    return {{"queries", hidden_.queries() + retests_asked_},
+            {"multiqueries", hidden_.shared_queries()},
+            {"requeries", hidden_.requeries()},
+            {"reasked", reasked_},
             {"retests", retests_asked_},
+            {"opened_unasked", opened_unasked_},
+            {"skipped_as_vain", skipped_as_vain_},
+            {"frames_slept", frames_slept_},
             {"nodes_visited", walk_.nodes_visited()},
             {"units_drawn", units_drawn_},
             {"units_found_visible", units_found_visible_}};
   }
 
  private:
-  /// A node that waits for its question or answer; its boxes lie in boxes_.
-  struct Entry {
-    NodeWalk::Visit visit;
-    std::uint32_t first_box = 0, box_count = 0;
-    std::uint32_t hidden_frames = 0;
-    bool alone = false;  // it or its group showed
-  };
-  using Queue = std::vector<Entry>;
-  static constexpr std::uint64_t hand_over_triangles = 30'000;
+  using Entry = HiddenQueue::Entry;                 // its boxes lie in boxes_
   static constexpr std::uint64_t hidden_part = 20;  // less than one in so many is hardly any
   static constexpr std::uint64_t new_part = 8;      // one in so many is much
   static constexpr std::size_t many_found = 4;
   static constexpr std::uint64_t query_triangles = 100;  // cost as much as a query
-  /// A query and what it is about: a run of members_.
-  struct Asked {
+  /// A question about a unit that is drawn.
+  struct Retest {
     QueryId query;
-    std::uint32_t first = 0, count = 0;
+    QueryHierarchy::NodeIndex node = 0;
   };
 
   void decide(const NodeWalk::Visit& visit, DrawSink& out) {
@@ -197,12 +198,15 @@ class Chcpp : public ICuller {
       } else {
         walk_.open(visit);
       }
-    } else if (!unit && memory_.was_visited(visit.node) && memory_.now() < known.test_at) {
+    } else if (open_unasked_ && !unit && memory_.was_visited(visit.node) &&
+               memory_.now() < known.test_at) {
       // Its box shows, though what is below it was hidden.
       walk_.open(visit);
-    } else if ((blind_ && walk_.kept_count() == 0) ||
-               (memory_.hidden_frames(visit.node) == 0 && !worth_asking(visit.node)) ||
-               !wait_hidden(visit)) {
+      ++opened_unasked_;
+    } else if (memory_.hidden_frames(visit.node) == 0 && in_vain(visit.node)) {
+      take_as_visible(visit, out);
+      ++skipped_as_vain_;
+    } else if ((blind_ && walk_.kept_count() == 0) || !wait_hidden(visit)) {
       take_as_visible(visit, out);
     }
     known.visited = memory_.now();
@@ -263,7 +267,7 @@ class Chcpp : public ICuller {
     ++units_drawn_;
     drawn_work_ += walk_.hierarchy().work(visit.node);
     waiting_triangles_ += walk_.draw(visit);
-    if (waiting_triangles_ < hand_over_triangles) return;
+    if (hand_over_triangles_ == 0 || waiting_triangles_ < hand_over_triangles_) return;
     waiting_triangles_ = 0;
     walk_.hand_over(out);
     out.flush();
@@ -281,7 +285,7 @@ class Chcpp : public ICuller {
     Entry entry = {visit};
     if (!find_boxes(entry)) return false;
     entry.hidden_frames = memory_.hidden_frames(visit.node);
-    hidden_.push_back(entry);
+    hidden_.add(entry);
     return true;
   }
 
@@ -289,51 +293,9 @@ class Chcpp : public ICuller {
   /// whose time has come behind these.
   void ask(DrawSink& out) {
     if (walk_.hand_over(out)) out.flush();
-    members_.clear();
-    group();
-    std::uint32_t first = 0;
-    for (const std::uint32_t end : ends_) {
-      group_boxes_.clear();
-      const auto start = static_cast<std::uint32_t>(members_.size());
-      for (std::uint32_t i = first; i < end; ++i) {
-        const Entry& entry = hidden_[candidates_[i].id];
-        group_boxes_.insert(group_boxes_.end(), boxes_.begin() + entry.first_box,
-                            boxes_.begin() + entry.first_box + entry.box_count);
-        members_.push_back(entry);
-      }
-      asked_.push_back({device_->query(group_boxes_), start, end - first});
-      ++queries_;
-      groups_ += end - first > 1 ? 1 : 0;
-      first = end;
-    }
-    hidden_.clear();
+    hidden_.ask(*device_, walk_.hierarchy(), boxes_);
     device_->flush();
     if (!due_.empty()) ask_due(out);
-  }
-
-  /// Divides the queue of hidden nodes: group g is candidates_[ends_[g - 1] … ends_[g] - 1]. Those
-  /// whose group showed are asked about alone.
-  void group() {
-    candidates_.clear();
-    std::uint32_t alone = 0;
-    for (std::uint32_t i = 0; i < hidden_.size(); ++i) {
-      if (!multiqueries_ || hidden_[i].alone) {
-        candidates_.push_back({0, 0, 0, i});
-        ++alone;
-      }
-    }
-    for (std::uint32_t i = 0; i < hidden_.size() && multiqueries_; ++i) {
-      const Entry& entry = hidden_[i];
-      if (entry.alone) continue;
-      candidates_.push_back(
-          {entry.hidden_frames,
-           static_cast<std::uint32_t>(walk_.hierarchy().triangles(entry.visit.node)),
-           entry.box_count, i});
-    }
-    ends_.clear();
-    group_multiqueries(model_, persistence_, std::span(candidates_).subspan(alone), ends_);
-    for (std::uint32_t& end : ends_) end += alone;
-    for (std::uint32_t i = alone; i > 0; --i) ends_.insert(ends_.begin(), i);
   }
 
   /// Asks about visible units again. Their answers are read when all is drawn.
@@ -342,8 +304,7 @@ class Chcpp : public ICuller {
     for (const Entry& entry : due_) {
       const QueryId query =
           device_->query(std::span(boxes_).subspan(entry.first_box, entry.box_count));
-      retests_.push_back({query, entry.visit.node, 1});
-      ++queries_;
+      retests_.push_back({query, entry.visit.node});
       ++retests_asked_;
     }
     due_.clear();
@@ -353,31 +314,19 @@ class Chcpp : public ICuller {
   /// Reads what was asked about hidden nodes: what is visible is drawn or opened.
   void read_answers(DrawSink& out) {
     found_.clear();
-    for (const Asked& asked : asked_) {
-      const bool visible = device_->samples(asked.query) > threshold_px_;
-      for (std::uint32_t i = asked.first; i < asked.first + asked.count; ++i) {
-        Entry entry = members_[i];
-        if (visible && asked.count > 1) {
-          entry.alone = true;
-          hidden_.push_back(entry);
-          ++requeries_;
-          continue;
-        }
-        ++answers_;
-        if (entry.hidden_frames > 0) persistence_.note(entry.hidden_frames, !visible);
-        entry.hidden_frames = 0;
-        if (!visible) {
-          memory_.note_hidden(entry.visit.node);
-          ++found_hidden_;
-          hidden_work_ += walk_.hierarchy().work(entry.visit.node);
-        } else if (walk_.hierarchy().is_unit(entry.visit.node)) {
-          found_.push_back(entry);
-        } else {
-          take_as_visible(entry.visit, out);
-        }
+    hidden_.read(*device_, threshold_px_, answers_);
+    for (const auto& [entry, visible] : answers_) {
+      ++answer_count_;
+      if (!visible) {
+        memory_.note_hidden(entry.visit.node);
+        ++found_hidden_;
+        hidden_work_ += walk_.hierarchy().work(entry.visit.node);
+      } else if (walk_.hierarchy().is_unit(entry.visit.node)) {
+        found_.push_back(entry);
+      } else {
+        take_as_visible(entry.visit, out);
       }
     }
-    asked_.clear();
     draw_found(out);
   }
 
@@ -386,42 +335,42 @@ class Chcpp : public ICuller {
   /// that is likely to find some of them hidden.
   void draw_found(DrawSink& out) {
     std::size_t drawn = found_.size();
-    if (found_.size() >= many_found) {
+    if (reask_ && found_.size() >= many_found) {
       drawn = (found_.size() + 1) / 2;
       std::ranges::sort(found_, {}, [&](const Entry& entry) {
         return std::pair(walk_.nearness(entry.visit.node), entry.visit.node);
       });
     }
     for (std::size_t i = 0; i < found_.size(); ++i) {
-      if (i < drawn || !worth_asking(found_[i].visit.node)) {
+      if (i < drawn || in_vain(found_[i].visit.node)) {
         ++units_found_visible_;
         take_as_visible(found_[i].visit, out);
         continue;
       }
-      found_[i].alone = true;
-      hidden_.push_back(found_[i]);
-      ++requeries_;
+      hidden_.add_again(found_[i]);
+      ++reasked_;
     }
   }
 
-  /// Of a node of which nothing is known: a question is to save more than it costs, if as many are
-  /// hidden as have been found so far in this frame.
-  bool worth_asking(QueryHierarchy::NodeIndex node) const {
+  /// Of a node of which nothing is known: would a question cost more than it saves, if as many are
+  /// hidden as have been found so far in this frame?
+  bool in_vain(QueryHierarchy::NodeIndex node) const {
+    if (!skip_vain_) return false;
     const std::uint64_t work = walk_.hierarchy().work(node);
     const std::uint64_t least =
         walk_.hierarchy().is_unit(node) ? query_triangles : walk_.hierarchy().leaf_triangles();
-    return (found_hidden_ + 1) * work >= (answers_ + 2) * least;
+    return (found_hidden_ + 1) * work < (answer_count_ + 2) * least;
   }
 
   /// Asks about the visible units that are left, and reads what became of all.
   void finish_retests(DrawSink& out) {
     if (!due_.empty()) ask_due(out);
-    for (const Asked& asked : retests_) {
-      if (device_->samples(asked.query) > threshold_px_) {
-        memory_.note_visible(walk_.hierarchy(), asked.first);
+    for (const Retest& retest : retests_) {
+      if (device_->samples(retest.query) > threshold_px_) {
+        memory_.note_visible(walk_.hierarchy(), retest.node);
       } else {
-        memory_.note_hidden(asked.first);
-        hidden_work_ += walk_.hierarchy().work(asked.first);
+        memory_.note_hidden(retest.node);
+        hidden_work_ += walk_.hierarchy().work(retest.node);
       }
     }
   }
@@ -430,15 +379,18 @@ class Chcpp : public ICuller {
   NodeWalk walk_;
   NodeBoxes boxes_of_;
   NodeMemory memory_;
+  HiddenQueue hidden_;  // the I-queue
   std::size_t batch_;
   bool lazy_;
   std::uint32_t interval_;
   bool random_;
-  bool multiqueries_;
-  MultiqueryModel model_;
-  Persistence persistence_;
   std::optional<TightBounds::Limits> tight_;
   std::uint64_t threshold_px_;
+  bool may_sleep_;
+  bool reask_;
+  bool open_unasked_;
+  bool skip_vain_;
+  std::uint64_t hand_over_triangles_;
   RenderDevice* device_ = nullptr;
   Random chance_{0};
   SleepPattern sleep_;
@@ -447,25 +399,21 @@ class Chcpp : public ICuller {
   const Frame* frame_ = nullptr;
   bool blind_ = false;
   std::vector<Aabb> boxes_;
-  Queue hidden_;                // the I-queue
-  Queue due_;                   // the V-queue
-  std::vector<Asked> asked_;    // about hidden nodes
-  Queue members_;               // of asked_
-  Queue found_;                 // units that show
-  std::vector<Asked> retests_;  // first is the node
+  std::vector<Entry> due_;    // the V-queue
+  std::vector<Entry> found_;  // units that show
+  std::vector<Retest> retests_;
+  std::vector<HiddenQueue::Answer> answers_;
   std::uint64_t drawn_work_ = 0, hidden_work_ = 0;
   std::uint64_t units_new_ = 0, units_drawn_now_ = 0;  // while asleep
   std::uint64_t waiting_triangles_ = 0;                // drawn, but not handed over
-  std::uint64_t answers_ = 0;                          // about hidden nodes
+  std::uint64_t answer_count_ = 0;                     // about hidden nodes
   std::uint64_t found_hidden_ = 0;                     // of these
-  std::vector<MultiqueryCandidate> candidates_;
-  std::vector<std::uint32_t> ends_;
-  std::vector<Aabb> group_boxes_;
 
-  std::uint64_t queries_ = 0;
-  std::uint64_t groups_ = 0;
-  std::uint64_t requeries_ = 0;
+  std::uint64_t reasked_ = 0;
   std::uint64_t retests_asked_ = 0;
+  std::uint64_t opened_unasked_ = 0;
+  std::uint64_t skipped_as_vain_ = 0;
+  std::uint64_t frames_slept_ = 0;
   std::uint64_t units_drawn_ = 0;
   std::uint64_t units_found_visible_ = 0;
 };

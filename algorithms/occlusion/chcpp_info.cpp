@@ -42,6 +42,9 @@ CullerInfo chcpp_info() {
       ParameterSpec::choice("cost_model", "paper", {"paper", "slides"}, query,
                             "by what multiqueries are grouped: expected queries, or triangles not "
                             "drawn against boxes asked about"),
+      ParameterSpec::real("box_cost", 0.1, 0.0, 1000.0, "", query,
+                          "of the slides' cost model (c1): what a box costs, as a share of what a "
+                          "query costs besides"),
       ParameterSpec::choice(
           "persistence", "formula", {"formula", "measured"}, query,
           "how likely hidden nodes stay hidden: 0.99 - 0.7 e^-t, or as counted on "
@@ -52,10 +55,28 @@ CullerInfo chcpp_info() {
                           "the parts' boxes have at most so many times the surface of the one box"),
       ParameterSpec::integer("max_boxes", 16, 1, TightBounds::most_boxes, "boxes", build,
                              "a unit has at most so many boxes, and fewer if it is light"),
+      ParameterSpec::choice("division", "least_room", {"least_room", "finest"}, build,
+                            "of the divisions into boxes that sigma allows: the one with the least "
+                            "room in its boxes, or the last, as in the paper"),
       ParameterSpec::integer(
           "threshold_px", 0, 0, 1'000'000, "pixels", query,
-          "nodes whose boxes show no more pixels than this are left out; above 0 "
-          "small things vanish from the image")};
+          "nodes whose boxes together show no more samples than this are left out; a pixel that "
+          "several of them cover counts for each; above 0 small things vanish from the image"),
+      ParameterSpec::boolean("open_unasked", true, query,
+                             "a hidden node whose box shows is opened unasked until its next test; "
+                             "without, it is asked about in every frame"),
+      ParameterSpec::boolean("reask", true, query,
+                             "of many units found visible together the nearer half is drawn and "
+                             "the rest asked about again"),
+      ParameterSpec::boolean("skip_vain", true, query,
+                             "nodes of which nothing is known are drawn unasked while hardly any "
+                             "answer of the frame was hidden"),
+      ParameterSpec::boolean("sleep", true, query,
+                             "after frames in which hardly anything was hidden, the next ones are "
+                             "drawn without a question"),
+      ParameterSpec::integer("hand_over_triangles", 30'000, 0, 1'000'000'000, "triangles", query,
+                             "so much drawn geometry is handed over to the device at once, so that "
+                             "it works while the walk goes on; 0: only before questions")};
   info.cost = "O(visible nodes + hidden nodes beside them), and a query for a part of these";
   info.limits =
       "What shows by its boxes but not by itself is drawn. After a cut it knows nothing and waits "

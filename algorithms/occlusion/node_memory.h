@@ -28,12 +28,13 @@ class NodeMemory {
     frame_ = no_frame;
   }
 
-  /// At the start of every call of cull(). The tree may have grown since.
-  void start(const Frame& frame, const QueryHierarchy& hierarchy) {
+  /// At the start of every call of cull(). The tree may have grown since. Is it the frame's first?
+  bool start(const Frame& frame, const QueryHierarchy& hierarchy) {
     if (hierarchy.node_count() > nodes_.size()) nodes_.resize(hierarchy.node_count());
-    if (frame.index == frame_) return;
+    if (frame.index == frame_) return false;
     frame_ = frame.index;
     ++now_;
+    return true;
   }
 
   /// Nodes that hold other things now.

@@ -2,16 +2,12 @@
 
 #include <algorithm>
 
+#include "algorithms/occlusion/box_queries.h"
+
 namespace vislab::occlusion_culling {
 
 double NodeWalk::nearness(NodeIndex node) const {
-  const Camera& camera = frame_->camera;
-  const Aabb& box = hierarchy_.node(node).box;
-  if (camera.lens.projection == Projection::perspective) {
-    return distance_squared(box, camera.pose.eye);
-  }
-  const glm::dvec3 reach = glm::abs(camera.pose.back) * box.half_size();
-  return camera.planar_depth(box.center()) - (reach.x + reach.y + reach.z);
+  return occlusion_culling::nearness(frame_->camera, hierarchy_.node(node).box);
 }
 
 void NodeWalk::build(const Scene& scene) {

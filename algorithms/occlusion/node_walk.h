@@ -50,7 +50,7 @@ class NodeWalk {
   /// What is offered of a unit and may be in the view is kept. Returns how many triangles.
   std::uint64_t draw(const Visit& visit);
 
-  /// What a walk goes by: squared distance from the eye, or depth for an orthographic camera.
+  /// What a walk goes by (box_queries.h).
   double nearness(NodeIndex node) const;
 
   /// Emits what was kept since the last time. False if there was nothing.

@@ -17,7 +17,7 @@ void ObjectList::fill(const Frame& frame, const Candidates& candidates) {
         ++outside_;
         continue;
       }
-      listed.nearness = view_.nearness(box);
+      listed.nearness = nearness(frame.camera, box);
       listed.object = object;
       listed.askable = place == BoxPlace::askable;
       listed_.push_back(listed);

@@ -5,7 +5,8 @@
 //   wakes it.
 // Guarantee: none needed: a method that sleeps draws everything in the view.
 // Cost: none.
-// Limits: what comes to be hidden without anything new is noticed only when the pause ends.
+// Limits: what comes to be hidden without anything new is noticed only when the pause ends: after
+//   longest_pause frames at most.
 // Source: own.
 #pragma once
 
@@ -16,6 +17,10 @@ namespace vislab::occlusion_culling {
 
 class SleepPattern {
  public:
+  static constexpr int patience = 4;  // frames in vain in a row, after which it falls asleep
+  static constexpr std::uint32_t first_pause = 8;
+  static constexpr std::uint32_t longest_pause = 64;
+
   /// Is this frame slept through? The same answer throughout a frame.
   bool asleep(std::uint64_t frame) {
     if (frame == frame_) return asleep_;
@@ -38,9 +43,6 @@ class SleepPattern {
 
  private:
   static constexpr std::uint64_t no_frame = ~std::uint64_t{0};
-  static constexpr int patience = 4;  // frames in vain in a row
-  static constexpr std::uint32_t first_pause = 8;
-  static constexpr std::uint32_t longest_pause = 64;
 
   void judge() {
     if (asleep_) return;

@@ -39,10 +39,7 @@ CullerInfo describe() {
   info.space = Space::image;
   info.stage = PipelineStage::raster;
   info.needs_device = true;
-  info.parameters = {ParameterSpec::integer(
-      "threshold_px", 0, 0, 1'000'000, "pixels", ParameterSpec::Stage::query,
-      "objects whose box shows no more pixels than this are left out; above 0 small things vanish "
-      "from the image")};
+  info.parameters = {threshold_parameter()};
   info.cost = "O(n log n) for n candidates, and one query with its wait for each";
   info.limits =
       "Waits for every answer, so it pays only where much is hidden behind little; objects outside "
@@ -72,7 +69,7 @@ class StopAndWait : public ICuller {
     order_.clear();
     for_each_object_run(candidates, frame, [&](std::span<const ObjectId> run) {
       for (const ObjectId object : run) {
-        order_.push_back({view_.nearness(frame.objects.bounds[object]), object});
+        order_.push_back({nearness(frame.camera, frame.objects.bounds[object]), object});
       }
     });
     std::ranges::sort(order_);

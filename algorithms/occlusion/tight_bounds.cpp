@@ -35,7 +35,9 @@ Aabb overlap_of(const Aabb& a, const Aabb& b) {
 class Division {
  public:
   Division(const TightBounds::Limits& limits, const Aabb& box)
-      : max_pieces_(limits.max_boxes), surface_limit_(limits.sigma * half_area(box)) {
+      : max_pieces_(limits.max_boxes),
+        surface_limit_(limits.sigma * half_area(box)),
+        finest_(limits.finest) {
     const glm::dvec3 size = box.half_size() * 2.0;
     pad_ = thickness * std::max({size.x, size.y, size.z});
   }
@@ -88,7 +90,7 @@ class Division {
     double room = 0.0;
     for (const Piece& piece : std::span(pieces_).first(count_)) room += piece.room;
     const double price = room * (1.0 + price_of_box * count_);
-    if (best_count_ > 0 && price >= best_price_) return;
+    if (best_count_ > 0 && price >= best_price_ && !finest_) return;
     best_price_ = price;
     best_count_ = count_;
     for (std::uint32_t i = 0; i < count_; ++i) best_[i] = pieces_[i].box;
@@ -96,6 +98,7 @@ class Division {
 
   std::uint32_t max_pieces_;
   double surface_limit_;
+  bool finest_;
   double pad_ = 0.0;
   std::uint32_t count_ = 0;
   std::uint32_t best_count_ = 0;
@@ -179,7 +182,8 @@ class TightBounds::Divider {
 
 void TightBounds::build(const Scene& scene, const Limits& limits) {
   scene_ = &scene;
-  limits_ = {limits.sigma, std::min(limits.max_boxes, most_boxes)};
+  limits_ = limits;
+  limits_.max_boxes = std::min(limits.max_boxes, most_boxes);
   parts_.assign(1, {});
   whole_mesh_.clear();
   for (const Mesh& mesh : scene.meshes) {

@@ -16,6 +16,8 @@ class FollowedStructure {
   explicit FollowedStructure(const typename Structure::Limits& limits) : structure_(limits) {}
 
   const Structure& structure() const { return structure_; }
+  /// Is the object shown? One whose box is not valid is held too, unplaced.
+  bool holds(ObjectId object) const { return is_in_[object] != 0; }
 
   /// The scene outlives this.
   void build(const Scene& scene) {

@@ -40,7 +40,8 @@ void QueryHierarchy::update(const Frame& frame, const Changes& changes) {
   bool others = !changes.shown.empty() || !changes.hidden.empty();
   for (const ObjectId object : changes.moved) {
     // Between the tree and the unplaced.
-    others |= frame.objects.bounds[object].valid() != (unit_of_[object] != nowhere);
+    others |= followed_->holds(object) &&
+              frame.objects.bounds[object].valid() != (unit_of_[object] != nowhere);
   }
   if (others) link();
 }

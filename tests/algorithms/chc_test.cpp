@@ -8,16 +8,12 @@
 
 #include "common/render/modelled_gpu.h"
 #include "common/render/osmesa_device.h"
-#include "common/scene/generators/generators.h"
-#include "common/scene/generators/occlusion.h"
 #include "common/spatial/query_hierarchy.h"
-#include "experiments/contract/small_scenes.h"
-#include "tests/algorithms/query_play.h"
+#include "tests/algorithms/query_scenes.h"
 
 namespace vislab {
 namespace {
 
-constexpr Viewport viewport{127, 95};
 /// Small units, so that small scenes have hierarchies.
 const char* const exact_methods[] = {"occlusion.chc[leaf_triangles=100]",
                                      "occlusion.chc",
@@ -31,49 +27,22 @@ const char* const exact_methods[] = {"occlusion.chc[leaf_triangles=100]",
                                      "occlusion.chcpp[leaf_triangles=100,cost_model=slides]",
                                      "occlusion.chcpp[leaf_triangles=100,persistence=measured]",
                                      "occlusion.chcpp[leaf_triangles=100,max_boxes=2,sigma=3]",
-                                     "occlusion.chcpp[leaf_triangles=100,tight_bounds=false]"};
-
-Camera looking(const glm::dvec3& eye, const glm::dvec3& target) {
-  return {look_at(eye, target), perspective_lens(degrees(60.0), viewport.aspect(), 0.3, 3000.0)};
-}
-
-Play finished(Scene scene, const std::vector<Camera>& cameras) {
-  Play play;
-  play.scene = std::move(scene);
-  play.scene.finish();
-  for (const Camera& camera : cameras) play.steps.push_back({camera, {}});
-  return play;
-}
-
-Scene small_city() {
-  CityParameters parameters;
-  parameters.blocks_x = parameters.blocks_z = 6;
-  parameters.roof_share = 0.5;
-  parameters.street_boxes = 40;
-  return make_city(parameters);
-}
-
-Play street() {
-  return finished(
-      small_city(),
-      {looking({0.0, 1.7, 45.0}, {0.0, 1.7, 0.0}), looking({0.0, 1.7, 43.0}, {0.0, 1.7, 0.0}),
-       looking({0.0, 1.7, 0.0}, {20.0, 4.0, 0.0}), looking({0.0, 1.7, 0.0}, {-20.0, 4.0, 3.0}),
-       looking({12.5, 1.7, 1.0}, {0.0, 8.0, -30.0})});
-}
+                                     "occlusion.chcpp[leaf_triangles=100,division=finest]",
+                                     "occlusion.chcpp[leaf_triangles=100,tight_bounds=false]",
+                                     "occlusion.chcpp[leaf_triangles=100,open_unasked=false]",
+                                     "occlusion.chcpp[leaf_triangles=100,reask=false]",
+                                     "occlusion.chcpp[leaf_triangles=100,skip_vain=false]",
+                                     "occlusion.chcpp[leaf_triangles=100,hand_over_triangles=50]",
+                                     "occlusion.chcpp[leaf_triangles=100,hand_over_triangles=0]",
+                                     "occlusion.chcpp[leaf_triangles=100,sleep=false]"};
 
 Play standing(int frames) {
   return finished(small_city(), std::vector<Camera>(static_cast<std::size_t>(frames),
                                                     looking({0.0, 1.7, 45.0}, {0.0, 1.7, 0.0})));
 }
 
-std::uint64_t kept(const std::vector<QueryFrame>& frames) {
-  std::uint64_t sum = 0;
-  for (const QueryFrame& frame : frames) sum += frame.kept.size();
-  return sum;
-}
-
 void expect_exact(Play play, double most_kept = 0.8) {
-  QueryPlay stage(std::move(play), viewport);
+  QueryPlay stage(std::move(play), query_viewport);
   OsMesaDevice device;
   for (const char* method : exact_methods) {
     const std::vector<QueryFrame> frames = stage.run(method, device);
@@ -89,62 +58,73 @@ void expect_exact(Play play, double most_kept = 0.8) {
 
 TEST(Coherent, ChangesNoImageInStreetsAndAtCuts) { expect_exact(street()); }
 
-TEST(Coherent, ChangesNoImageAmongPipes) {
-  PlantParameters parameters;
-  parameters.bays_x = 4;
-  parameters.bays_z = 2;
-  parameters.segments = 4;
-  expect_exact(finished(make_plant(parameters), {looking({-14.0, 1.7, 0.0}, {17.0, 1.7, 0.0}),
-                                                 looking({-12.0, 1.7, 0.0}, {17.0, 1.7, 1.0}),
-                                                 looking({17.0, 1.7, 11.0}, {-14.0, 1.7, 0.0}),
-                                                 looking({17.0, 1.7, 11.0}, {-14.0, 1.7, 0.0})}));
-}
+TEST(Coherent, ChangesNoImageAmongPipes) { expect_exact(among_pipes()); }
 
 TEST(Coherent, ChangesNoImageWhileObjectsMoveAppearAndDisappear) {
-  MovingWallParameters parameters;
-  parameters.targets = 300;
-  const Camera camera = looking({0.0, 5.0, 12.0}, {0.0, 4.5, 0.0});
-  Play play = finished(make_moving_wall(parameters), std::vector<Camera>(7, camera));
-  const auto wall_at = [&](std::size_t step, const glm::dvec3& place) {
-    play.steps[step].changes.moved = {0};
-    play.steps[step].changes.transforms = {placed(place, {10.0, 6.0, 0.15})};
-  };
-  wall_at(2, {8.0, 6.0, 0.0});
-  wall_at(3, {0.0, 6.0, 0.0});
-  play.steps[4].changes.hidden = {0, 3, 4, 5};
-  play.steps[5].changes.shown = {0, 4};
-  play.steps[5].changes.hidden = {7, 8, 9, 10};
-  play.steps[6].changes.shown = {3, 5, 7, 8};
-  expect_exact(std::move(play), 0.95);
+  expect_exact(changing_objects(), 0.95);
 }
 
 TEST(Coherent, ChangesNoImageWithTheEyeInBoxesAndAtTheNearPlane) {
-  Scene scene;
-  scene.meshes = {cube_mesh(), sphere_mesh(8)};
-  // A hall around everything, a sphere whose box holds the eye though it does not, a wall, and
-  // spheres behind it.
-  scene.objects = {{0, placed({0.0, 0.0, 0.0}, glm::dvec3(60.0)), none_id},
-                   {1, placed({0.0, 0.0, 0.0}, glm::dvec3(3.0)), none_id},
-                   {0, placed({0.0, 0.0, -10.0}, {20.0, 20.0, 0.2}), none_id}};
-  for (int i = 0; i < 20; ++i) {
-    scene.objects.push_back({1, placed({1.5 * (i - 10), 0.3 * i, -20.0}), none_id});
+  expect_exact(eye_in_boxes(), 1.0);
+}
+
+/// What a method keeps, and asks, in two passes with a reset between them.
+void expect_the_same_after_a_reset(QueryPlay& stage, RenderDevice& device) {
+  for (const char* method : exact_methods) {
+    const auto [once, again] = stage.run_twice(method, device);
+    for (std::size_t i = 0; i < once.size(); ++i) {
+      EXPECT_EQ(once[i].kept, again[i].kept) << method << ", frame " << i;
+      EXPECT_EQ(once[i].counts.named(), again[i].counts.named()) << method << ", frame " << i;
+    }
   }
-  expect_exact(finished(std::move(scene), {looking({2.5, 2.5, 2.5}, {0.0, 0.0, -10.0}),
-                                           looking({0.0, 0.0, -9.6}, {0.0, 0.0, -20.0}),
-                                           looking({0.1, 0.0, -9.9}, {8.0, 0.0, -12.0}),
-                                           looking({0.0, 0.0, 2.9}, {0.0, 0.0, -20.0})}),
-               1.0);
 }
 
 TEST(Coherent, RepeatsItselfOnADeviceThatKeepsItsOwnTime) {
-  QueryPlay stage(street(), viewport);
-  for (const char* method : exact_methods) {
-    ModelledGpu device(gpu_presets().front().model);
-    const std::vector<QueryFrame> once = stage.run(method, device);
+  QueryPlay stage(street(), query_viewport);
+  ModelledGpu device(gpu_presets().front().model);
+  expect_the_same_after_a_reset(stage, device);
+  for (const char* method : {"occlusion.chc", "occlusion.chcpp"}) {
+    stage.run(method, device);
     const std::optional<double> clock = device.clock_ms();
-    const std::vector<QueryFrame> again = stage.run(method, device);
+    stage.run(method, device);
     EXPECT_EQ(clock, device.clock_ms()) << method;
-    for (std::size_t i = 0; i < once.size(); ++i) EXPECT_EQ(once[i].kept, again[i].kept) << method;
+  }
+}
+
+/// In a process of its own, since OSMesa reads how many threads it has when its first context is
+/// made.
+TEST(CoherentDeathTest, RepeatsItselfOnASynchronousDevice) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto run = [] {
+    ::setenv("LP_NUM_THREADS", "0", 1);
+    QueryPlay stage(street(), query_viewport);
+    OsMesaDevice device;
+    expect_the_same_after_a_reset(stage, device);
+    std::_Exit(::testing::Test::HasFailure() ? 1 : 0);
+  };
+  EXPECT_EXIT(run(), ::testing::ExitedWithCode(0), "");
+}
+
+TEST(Coherent, ChangesNoImageWithThousandsOfQuestionsUnderWay) {
+#if defined(__SANITIZE_ADDRESS__)
+  constexpr Viewport viewport{128, 128};
+#else
+  constexpr Viewport viewport{512, 512};
+#endif
+  Play play = thousands_of_boxes(0.5, 2.0);
+  play.steps.erase(play.steps.begin());
+  QueryPlay stage(std::move(play), viewport);
+  OsMesaDevice device;
+  for (const char* method :
+       {"occlusion.chc[leaf_triangles=1]",
+        "occlusion.chcpp[leaf_triangles=1,batch=10000,multiqueries=false,interval=1,reask=false,"
+        "skip_vain=false]"}) {
+    std::uint64_t most = 0;
+    for (const QueryFrame& frame : stage.run(method, device)) {
+      EXPECT_EQ(frame.image_px, 0U) << method;
+      most = std::max(most, frame.counts.queries);
+    }
+    EXPECT_GT(most, 2000U) << method;
   }
 }
 
@@ -162,7 +142,7 @@ DeviceCounts settled(QueryPlay& stage, const std::string& method) {
 }
 
 TEST(ChcPlusPlus, AsksLessAndChangesStateLessByEachOfItsDevices) {
-  QueryPlay stage(standing(16), viewport);
+  QueryPlay stage(standing(16), query_viewport);
   const std::string units = "leaf_triangles=100";
   const DeviceCounts plain = settled(stage, "occlusion.chc[" + units + "]");
   const DeviceCounts all = settled(stage, "occlusion.chcpp[" + units + "]");
@@ -179,7 +159,7 @@ TEST(ChcPlusPlus, AsksLessAndChangesStateLessByEachOfItsDevices) {
 }
 
 TEST(ChcPlusPlus, SpreadsItsRetestsUnlessTheyAreAligned) {
-  QueryPlay stage(standing(14), viewport);
+  QueryPlay stage(standing(14), query_viewport);
   ModelledGpu device(gpu_presets().front().model);
   const auto busiest = [&](const std::string& retest) {
     std::uint64_t most = 0;
@@ -194,7 +174,7 @@ TEST(ChcPlusPlus, SpreadsItsRetestsUnlessTheyAreAligned) {
 }
 
 TEST(ChcPlusPlus, LosesMoreTheHigherItsThresholdIs) {
-  QueryPlay stage(street(), viewport);
+  QueryPlay stage(street(), query_viewport);
   ModelledGpu device(gpu_presets().front().model);
   for (const std::string method : {"chc", "chcpp"}) {
     const auto lost = [&](const std::string& threshold) {
@@ -224,7 +204,7 @@ TEST(Coherent, KeepsToWhatItIsOffered) {
     std::vector<ObjectId> last;
     for (std::uint64_t i = 0; i < 3; ++i) {
       const SceneState state(play.scene);
-      const Frame frame{i, camera, viewport, state.view(), 0.0};
+      const Frame frame{i, camera, query_viewport, state.view(), 0.0};
       run.culler().update(frame, {});
       sink.begin(play.scene, frame);
       // In the middle frame a half only: what is not offered is not taken for hidden.

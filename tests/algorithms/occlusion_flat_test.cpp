@@ -8,15 +8,11 @@
 #include "common/geometry/random.h"
 #include "common/render/modelled_gpu.h"
 #include "common/render/osmesa_device.h"
-#include "common/scene/generators/generators.h"
-#include "common/scene/generators/occlusion.h"
-#include "experiments/contract/small_scenes.h"
-#include "tests/algorithms/query_play.h"
+#include "tests/algorithms/query_scenes.h"
 
 namespace vislab {
 namespace {
 
-constexpr Viewport viewport{127, 95};
 const char* const exact_methods[] = {"occlusion.stop_and_wait",
                                      "occlusion.batched",
                                      "occlusion.batched[batch=1]",
@@ -25,54 +21,10 @@ const char* const exact_methods[] = {"occlusion.stop_and_wait",
                                      "occlusion.chc_flat[flush_every=1]",
                                      "occlusion.chc_flat[flush_every=1000]"};
 
-Camera looking(const glm::dvec3& eye, const glm::dvec3& target) {
-  return {look_at(eye, target), perspective_lens(degrees(60.0), viewport.aspect(), 0.3, 3000.0)};
-}
-
-Play finished(Scene scene, const std::vector<Camera>& cameras) {
-  Play play;
-  play.scene = std::move(scene);
-  play.scene.finish();
-  for (const Camera& camera : cameras) play.steps.push_back({camera, {}});
-  return play;
-}
-
-Scene small_city() {
-  CityParameters parameters;
-  parameters.blocks_x = parameters.blocks_z = 6;
-  parameters.roof_share = 0.5;
-  parameters.street_boxes = 40;
-  return make_city(parameters);
-}
-
-Scene small_plant() {
-  PlantParameters parameters;
-  parameters.bays_x = 4;
-  parameters.bays_z = 2;
-  parameters.segments = 4;
-  return make_plant(parameters);
-}
-
-std::uint64_t kept(const std::vector<QueryFrame>& frames) {
-  std::uint64_t sum = 0;
-  for (const QueryFrame& frame : frames) sum += frame.kept.size();
-  return sum;
-}
-
-DeviceCounts counts(const std::vector<QueryFrame>& frames) {
-  DeviceCounts sum;
-  for (const QueryFrame& frame : frames) {
-    sum.queries += frame.counts.queries;
-    sum.state_changes += frame.counts.state_changes;
-    sum.waits += frame.counts.waits;
-  }
-  return sum;
-}
-
 /// No method changes the image, and each leaves out at least a quarter of what is shown, even if
 /// all of it is asked about at once.
 void expect_exact(Play play) {
-  QueryPlay stage(std::move(play), viewport);
+  QueryPlay stage(std::move(play), query_viewport);
   OsMesaDevice device;
   for (const char* method : exact_methods) {
     const std::vector<QueryFrame> frames = stage.run(method, device);
@@ -122,7 +74,7 @@ TEST(QueryDemonstration, EveryMethodDrawsTheCubeAloneFromTheFront) {
                    {1, placed({0.0, -0.25, -4.0}, glm::dvec3(0.4)), none_id}};
   const Camera front = looking({0.0, -0.25, 6.0}, {0.0, -0.25, 0.0});
   const Camera back = looking({0.0, -0.25, -10.0}, {0.0, -0.25, 0.0});
-  QueryPlay stage(finished(std::move(scene), {front, front, back, back}), viewport);
+  QueryPlay stage(finished(std::move(scene), {front, front, back, back}), query_viewport);
   ModelledGpu device(gpu_presets().front().model);
   for (const char* method : {"occlusion.batched[batch=1]", "occlusion.stop_and_wait"}) {
     const std::vector<QueryFrame> frames = stage.run(method, device);
@@ -134,67 +86,18 @@ TEST(QueryDemonstration, EveryMethodDrawsTheCubeAloneFromTheFront) {
   }
 }
 
-TEST(FlatQueries, ChangeNoImageInStreetsAndAtCuts) {
-  expect_exact(finished(
-      small_city(),
-      {looking({0.0, 1.7, 45.0}, {0.0, 1.7, 0.0}), looking({0.0, 1.7, 43.0}, {0.0, 1.7, 0.0}),
-       looking({0.0, 1.7, 0.0}, {20.0, 4.0, 0.0}), looking({0.0, 1.7, 0.0}, {-20.0, 4.0, 3.0}),
-       looking({12.5, 1.7, 1.0}, {0.0, 8.0, -30.0})}));
-}
+TEST(FlatQueries, ChangeNoImageInStreetsAndAtCuts) { expect_exact(street()); }
 
-TEST(FlatQueries, ChangeNoImageAmongPipes) {
-  expect_exact(finished(small_plant(), {looking({-14.0, 1.7, 0.0}, {17.0, 1.7, 0.0}),
-                                        looking({-12.0, 1.7, 0.0}, {17.0, 1.7, 1.0}),
-                                        looking({17.0, 1.7, 11.0}, {-14.0, 1.7, 0.0}),
-                                        looking({17.0, 1.7, 11.0}, {-14.0, 1.7, 0.0})}));
-}
+TEST(FlatQueries, ChangeNoImageAmongPipes) { expect_exact(among_pipes()); }
 
 TEST(FlatQueries, ChangeNoImageWhileObjectsMoveAppearAndDisappear) {
-  MovingWallParameters parameters;
-  parameters.targets = 300;
-  const Camera camera = looking({0.0, 5.0, 12.0}, {0.0, 4.5, 0.0});
-  Play play = finished(make_moving_wall(parameters), std::vector<Camera>(7, camera));
-  const auto wall_at = [&](std::size_t step, const glm::dvec3& place) {
-    play.steps[step].changes.moved = {0};
-    play.steps[step].changes.transforms = {placed(place, {10.0, 6.0, 0.15})};
-  };
-  wall_at(2, {8.0, 6.0, 0.0});
-  wall_at(3, {0.0, 6.0, 0.0});
-  play.steps[4].changes.hidden = {0, 3, 4, 5};
-  play.steps[5].changes.shown = {0, 4};
-  play.steps[5].changes.hidden = {7, 8, 9, 10};
-  play.steps[6].changes.shown = {3, 5, 7, 8};
-  expect_exact(std::move(play));
+  expect_exact(changing_objects());
 }
 
-TEST(FlatQueries, ChangeNoImageWithTheEyeInBoxesAndAtTheNearPlane) {
-  Scene scene;
-  scene.meshes = {cube_mesh(), sphere_mesh(8)};
-  // A hall around everything, a sphere whose box holds the eye though it does not, a wall, and
-  // spheres behind it.
-  scene.objects = {{0, placed({0.0, 0.0, 0.0}, glm::dvec3(60.0)), none_id},
-                   {1, placed({0.0, 0.0, 0.0}, glm::dvec3(3.0)), none_id},
-                   {0, placed({0.0, 0.0, -10.0}, {20.0, 20.0, 0.2}), none_id}};
-  for (int i = 0; i < 20; ++i) {
-    scene.objects.push_back({1, placed({1.5 * (i - 10), 0.3 * i, -20.0}), none_id});
-  }
-  expect_exact(finished(
-      std::move(scene),
-      {looking({2.5, 2.5, 2.5}, {0.0, 0.0, -10.0}), looking({0.0, 0.0, -9.6}, {0.0, 0.0, -20.0}),
-       looking({0.1, 0.0, -9.9}, {8.0, 0.0, -12.0}), looking({0.0, 0.0, 2.9}, {0.0, 0.0, -20.0})}));
-}
+TEST(FlatQueries, ChangeNoImageWithTheEyeInBoxesAndAtTheNearPlane) { expect_exact(eye_in_boxes()); }
 
 TEST(FlatQueries, ChangeNoImageWithThousandsOfQuestionsUnderWay) {
-  BoxFieldParameters parameters;
-  parameters.count = 4000;
-  parameters.extent_m = 60.0;
-  parameters.min_half_size_m = 1.0;
-  parameters.max_half_size_m = 4.0;
-  QueryPlay stage(
-      finished(make_box_field(parameters), {looking({0.0, 0.0, 0.0}, {1.0, 0.0, 0.2}),
-                                            looking({0.0, 0.0, 0.0}, {1.0, 0.0, 0.3}),
-                                            looking({70.0, 9.0, 0.0}, {0.0, 0.0, 0.0})}),
-      viewport);
+  QueryPlay stage(thousands_of_boxes(), query_viewport);
   OsMesaDevice device;
   for (const char* method : {"occlusion.batched[batch=1000]",
                              "occlusion.chc_flat[flush_every=1000]", "occlusion.last_frame"}) {
@@ -209,7 +112,7 @@ TEST(FlatQueries, ChangeNoImageWithThousandsOfQuestionsUnderWay) {
 TEST(FlatQueries, AskAgainInTheSameWayAfterAReset) {
   QueryPlay stage(finished(small_city(), {looking({0.0, 1.7, 45.0}, {0.0, 1.7, 0.0}),
                                           looking({0.0, 1.7, 43.0}, {0.0, 1.7, 0.0})}),
-                  viewport);
+                  query_viewport);
   for (const char* method : exact_methods) {
     ModelledGpu device(gpu_presets().front().model);
     const std::vector<QueryFrame> once = stage.run(method, device);
@@ -222,7 +125,7 @@ TEST(FlatQueries, AskAgainInTheSameWayAfterAReset) {
 
 TEST(Batched, ChangesStateAndWaitsLessOftenTheLargerItsBatchesAre) {
   const Camera camera = looking({0.0, 1.7, 45.0}, {0.0, 1.7, 0.0});
-  QueryPlay stage(finished(small_city(), {camera, camera, camera}), viewport);
+  QueryPlay stage(finished(small_city(), {camera, camera, camera}), query_viewport);
   ModelledGpu device(gpu_presets().front().model);
   DeviceCounts last = counts(stage.run("occlusion.stop_and_wait", device));
   for (const char* batch : {"1", "8", "40"}) {
@@ -235,7 +138,8 @@ TEST(Batched, ChangesStateAndWaitsLessOftenTheLargerItsBatchesAre) {
 }
 
 TEST(Batched, KeepsWhatItAskedInTheViewOnly) {
-  QueryPlay stage(finished(small_city(), {looking({0.0, 1.7, 45.0}, {0.0, 1.7, 90.0})}), viewport);
+  QueryPlay stage(finished(small_city(), {looking({0.0, 1.7, 45.0}, {0.0, 1.7, 90.0})}),
+                  query_viewport);
   ModelledGpu device(gpu_presets().front().model);
   const QueryFrame away = stage.run("occlusion.batched", device).front();
   EXPECT_LT(away.counts.queries, stage.scene().object_count() / 2);
@@ -253,7 +157,7 @@ Play wall_that_goes() {
 }
 
 TEST(LastFrame, MissesWhatComesIntoViewForAsManyFramesAsItsAnswersAreLate) {
-  QueryPlay stage(wall_that_goes(), viewport);
+  QueryPlay stage(wall_that_goes(), query_viewport);
   OsMesaDevice device;
   for (const std::size_t late : {1U, 2U}) {
     const std::vector<QueryFrame> frames =
@@ -271,7 +175,7 @@ TEST(LastFrame, MissesWhatComesIntoViewForAsManyFramesAsItsAnswersAreLate) {
 TEST(Threshold, LosesMoreTheHigherItIs) {
   QueryPlay stage(finished(small_city(), {looking({0.0, 1.7, 45.0}, {0.0, 1.7, 0.0}),
                                           looking({30.0, 40.0, 60.0}, {0.0, 0.0, 0.0})}),
-                  viewport);
+                  query_viewport);
   ModelledGpu device(gpu_presets().front().model);
   for (const std::string method : {"stop_and_wait", "batched", "chc_flat"}) {
     std::uint64_t last_px = 0;

@@ -2,6 +2,7 @@
 // image. Test-only.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,7 @@ class DrawingSink : public RecordingSink {
 struct QueryFrame {
   std::vector<ObjectId> kept;  // in the order of drawing
   DeviceCounts counts;
+  Counters counters;           // of the method, in all frames so far
   std::uint64_t image_px = 0;  // undisputed pixels of the image that changed
   std::uint64_t disputed_image_px = 0;
 };
@@ -60,30 +62,14 @@ class QueryPlay {
 
   /// Through all frames; the device's scene is loaded first.
   std::vector<QueryFrame> run(const std::string& spec, RenderDevice& plain_device) {
-    TimedDevice device(plain_device);
-    device.load(play_.scene);
-    BuildContext context;
-    context.device = &device;
-    CullerRun run(spec, play_.scene, context);
-    SceneState state(play_.scene);
-    DrawingSink sink(device);
-    std::vector<QueryFrame> frames;
-    for (std::size_t i = 0; i < play_.steps.size(); ++i) {
-      state.apply(play_.steps[i].changes);
-      const Frame now = frame(i, state);
-      run.culler().update(now, play_.steps[i].changes);
-      sink.begin(play_.scene, now);
-      run.culler().cull(now, Candidates::everything(), sink);
-      QueryFrame result;
-      for (const TriangleRange& range : sink.emitted()) result.kept.push_back(range.object);
-      result.counts = device.counts();
-      judge_->start(now, truth_[i]);
-      const auto verdict = judge_->judge(now, sink.set());
-      result.image_px = verdict.image_px;
-      result.disputed_image_px = verdict.disputed_image_px;
-      frames.push_back(std::move(result));
-    }
-    return frames;
+    return passes(spec, plain_device, 1).front();
+  }
+
+  /// The same method through all frames, and once more after a reset.
+  std::array<std::vector<QueryFrame>, 2> run_twice(const std::string& spec,
+                                                   RenderDevice& plain_device) {
+    auto frames = passes(spec, plain_device, 2);
+    return {std::move(frames[0]), std::move(frames[1])};
   }
 
   /// Undisputed pixels that change in all frames together.
@@ -94,6 +80,44 @@ class QueryPlay {
   }
 
  private:
+  std::vector<std::vector<QueryFrame>> passes(const std::string& spec, RenderDevice& plain_device,
+                                              int count) {
+    TimedDevice device(plain_device);
+    device.load(play_.scene);
+    BuildContext context;
+    context.device = &device;
+    CullerRun run(spec, play_.scene, context);
+    std::vector<std::vector<QueryFrame>> all;
+    for (int i = 0; i < count; ++i) {
+      if (i > 0) run.culler().reset(1);
+      all.push_back(pass(run.culler(), device));
+    }
+    return all;
+  }
+
+  std::vector<QueryFrame> pass(ICuller& culler, TimedDevice& device) {
+    SceneState state(play_.scene);
+    DrawingSink sink(device);
+    std::vector<QueryFrame> frames;
+    for (std::size_t i = 0; i < play_.steps.size(); ++i) {
+      state.apply(play_.steps[i].changes);
+      const Frame now = frame(i, state);
+      culler.update(now, play_.steps[i].changes);
+      sink.begin(play_.scene, now);
+      culler.cull(now, Candidates::everything(), sink);
+      QueryFrame result;
+      for (const TriangleRange& range : sink.emitted()) result.kept.push_back(range.object);
+      result.counts = device.counts();
+      result.counters = culler.counters();
+      judge_->start(now, truth_[i]);
+      const auto verdict = judge_->judge(now, sink.set());
+      result.image_px = verdict.image_px;
+      result.disputed_image_px = verdict.disputed_image_px;
+      frames.push_back(std::move(result));
+    }
+    return frames;
+  }
+
   Frame frame(std::size_t index, const SceneState& state) const {
     return {index, play_.steps[index].camera, viewport_, state.view(), 0.0};
   }

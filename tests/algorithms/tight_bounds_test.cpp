@@ -93,7 +93,8 @@ TEST(TightBounds, HoldEveryPointOfEveryTriangleWithinTheSurfaceThatIsAllowed) {
   const SceneState state(scene);
   std::uint32_t divided = 0;
   for (const TightBounds::Limits limits :
-       {TightBounds::Limits{1.4, 16}, TightBounds::Limits{3.0, 32}, TightBounds::Limits{1.0, 2}}) {
+       {TightBounds::Limits{1.4, 16}, TightBounds::Limits{3.0, 32}, TightBounds::Limits{1.0, 2},
+        TightBounds::Limits{1.4, 16, true}}) {
     TightBounds bounds;
     bounds.build(scene, limits);
     for (ObjectId object = 0; object < scene.object_count(); ++object) {
@@ -140,6 +141,13 @@ TEST(TightBounds, ATurnedBeamHasAlongItsLengthWhatItsOneBoxHasAllAround) {
   boxes.clear();
   EXPECT_GT(bounds.append(1, state.view(), boxes), 3U);
   EXPECT_LT(volume_of(boxes), 0.35 * volume_of({&state.view().bounds[1], 1}));
+  // More boxes overlap more and gain too little for each, unless the finest division is wanted.
+  bounds.build(scene, {1.4, 32});
+  std::vector<Aabb> cheapest;
+  EXPECT_LT(bounds.append(1, state.view(), cheapest), 16U);
+  bounds.build(scene, {1.4, 32, true});
+  std::vector<Aabb> finest;
+  EXPECT_EQ(bounds.append(1, state.view(), finest), 32U);
   // A smaller surface is allowed: fewer boxes, or none but the one.
   bounds.build(scene, {1.0, 16});
   std::vector<Aabb> fewer;
