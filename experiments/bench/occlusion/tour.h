@@ -23,7 +23,7 @@ class Tour {
   Tour(const Tour&) = delete;
   Tour& operator=(const Tour&) = delete;
 
-  std::size_t frame_count() const { return path_.frames.size(); }
+  const Path& path() const { return path_; }
   /// Walks the path once. Cullers are built when they are first asked for.
   PathRun walk(const std::string& spec);
   /// Are the images of all frames those of the scene drawn whole, but for disputed pixels?
