@@ -20,6 +20,9 @@
 // Limits: an object whose boxes show although it does not is drawn. In a frame after a cut
 //   nothing is known: many rounds of questions, near first. Answers are read in the order of
 //   asking and never polled, so that they do not depend on time.
+//   With threshold_px > 0 a node is left out as a whole: the larger units are, the more pixels they
+//   show, so the less is lost by the same threshold. Sharing queries loses nothing more, since a
+//   group that shows little has no member that shows more.
 // Beyond the sources, because it was measured, each with a switch:
 //   - A hidden node whose box showed though all below it was hidden is opened unasked until its
 //     next test, where the paper asks about it in every frame (`open_unasked`).
