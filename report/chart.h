@@ -10,7 +10,7 @@
 namespace vislab {
 
 /// True if the frame times of the block's cells may stand on one axis: they were measured with the
-/// drawing in them, and all on the same machine.
+/// drawing in them, and all on the same machine and the same dials of a modelled device.
 bool has_time_axis(const BlockSummary& block);
 
 /// The cells that have a point in the chart, in the block's order: measured and judged. A cell's

@@ -1,5 +1,6 @@
 #include "report/depth_section.h"
 
+#include <algorithm>
 #include <set>
 #include <tuple>
 
@@ -27,8 +28,8 @@ Fields row_of(const BlockSummary& block, const DepthComplexityTable& table) {
 
 }  // namespace
 
-void add_depth_fields(const ReportInput& input, const std::filesystem::path& folder,
-                      Fields& fields) {
+void add_depth_fields(const ReportInput& input, const std::vector<const BlockSummary*>& left_out,
+                      const std::filesystem::path& folder, Fields& fields) {
   auto& rows = fields.lists["depths"];
   auto& pictures = fields.lists["depth_pictures"];
   std::set<std::tuple<std::string, std::string, int, int>> known;
@@ -36,6 +37,7 @@ void add_depth_fields(const ReportInput& input, const std::filesystem::path& fol
   double greatest = 0.0;
   for (const BlockSummary& block : input.blocks) {
     if (!input.depth_complexity) break;
+    if (std::ranges::count(left_out, &block) > 0) continue;
     if (!known
              .emplace(block.scene_hash, block.path_hash, block.viewport.width,
                       block.viewport.height)

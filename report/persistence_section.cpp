@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
-#include <tuple>
+#include <functional>
+#include <map>
+#include <utility>
 
 #include "algorithms/occlusion/persistence.h"
 #include "common/scene/error.h"
@@ -97,25 +98,115 @@ Fields spread_at(const std::vector<PersistenceRow>& rows, std::size_t t) {
   return fields;
 }
 
+/// A scene's counts at one time, over all its paths.
+struct SceneShare {
+  std::string scene;
+  StillHidden still;
+};
+
+std::vector<SceneShare> shares_at(const std::vector<PersistenceRow>& rows, std::size_t t) {
+  std::map<std::string, StillHidden> sums;
+  for (const PersistenceRow& row : rows) {
+    sums[row.scene].cases += row.counts.after[t].cases;
+    sums[row.scene].hidden += row.counts.after[t].hidden;
+  }
+  std::vector<SceneShare> shares;
+  for (const auto& [scene, still] : sums) {
+    if (still.cases >= least_persistence_cases) shares.push_back({scene, still});
+  }
+  std::ranges::stable_sort(shares, {},
+                           [](const SceneShare& share) { return share.still.share().value; });
+  return shares;
+}
+
+/// "0.740 (city)".
+std::string text_of(const SceneShare& share) {
+  return format_number(share.still.share().value) + " (" + markdown_text(share.scene) + ")";
+}
+
+/// The widest gap between two paths of one scene at a time, as text; empty if no scene has two.
+std::string spread_of_paths(const std::vector<PersistenceRow>& rows, std::size_t t) {
+  std::string widest;
+  double most = -1.0;
+  for (const PersistenceRow& low : rows) {
+    for (const PersistenceRow& high : rows) {
+      if (low.scene != high.scene || low.path == high.path) continue;
+      if (low.counts.after[t].cases < least_persistence_cases) continue;
+      if (high.counts.after[t].cases < least_persistence_cases) continue;
+      const double least = low.counts.after[t].share().value;
+      const double greatest = high.counts.after[t].share().value;
+      if (greatest - least <= most) continue;
+      most = greatest - least;
+      widest = format_number(least) + " (" + markdown_code(low.path) + ") and " +
+               format_number(greatest) + " (" + markdown_code(high.path) + ")";
+    }
+  }
+  return widest;
+}
+
+constexpr std::size_t told_times[] = {1, 2, 4, 8, 16};
+
+/// Is p(t) independent of the scene? Not where the intervals of two scenes lie apart.
+void add_answer(const std::vector<PersistenceRow>& rows, Fields& fields) {
+  std::string apart;
+  std::size_t compared = 0;
+  std::size_t first = 0;
+  for (const std::size_t t : told_times) {
+    const std::vector<SceneShare> shares = shares_at(rows, t);
+    if (shares.size() < 2) continue;
+    ++compared;
+    if (first == 0) first = t;
+    if (shares.front().still.share().high >= shares.back().still.share().low) continue;
+    if (apart.empty()) first = t;
+    apart += (apart.empty() ? "" : ", ") + std::to_string(t);
+  }
+  fields.flag("p_differs", !apart.empty());
+  fields.flag("p_alike", apart.empty() && compared > 0);
+  fields.flag("p_untold", compared == 0);
+  fields.values["p_apart"] = apart;
+  fields.values["p_time"] = std::to_string(first);
+  const std::vector<SceneShare> shares = shares_at(rows, std::max<std::size_t>(first, 1));
+  const bool several = shares.size() > 1;
+  fields.values["p_least"] = several ? text_of(shares.front()) : "–";
+  fields.values["p_most"] = several ? text_of(shares.back()) : "–";
+  const double most_appear = several ? 1.0 - shares.front().still.share().value : 0.0;
+  const double least_appear = several ? 1.0 - shares.back().still.share().value : 0.0;
+  fields.flag("p_has_factor", least_appear > 0.0);
+  fields.values["p_factor"] = format_number(most_appear / least_appear);
+  const std::string paths = spread_of_paths(rows, std::max<std::size_t>(first, 1));
+  fields.flag("p_has_paths", !paths.empty());
+  fields.values["p_paths"] = paths;
+}
+
 }  // namespace
 
-std::vector<PersistenceRow> persistence_rows(const ReportInput& input) {
+std::vector<PersistenceRow> persistence_rows(const ReportInput& input,
+                                             const std::vector<const BlockSummary*>& left_out) {
   std::vector<PersistenceRow> rows;
   if (!input.persistence) return rows;
-  std::set<std::tuple<std::string, std::string, int, int>> known;
+  using Place = std::pair<std::string, std::string>;  // scene and path
+  std::map<Place, std::vector<const BlockSummary*>> blocks;
+  std::vector<Place> places;  // in the blocks' order
   for (const BlockSummary& block : input.blocks) {
     if (std::ranges::none_of(block.cells, builds_on_the_past)) continue;
-    if (!known
-             .emplace(block.scene_hash, block.path_hash, block.viewport.width,
-                      block.viewport.height)
-             .second) {
-      continue;
-    }
-    try {
-      rows.push_back(
-          {block.scene, block.path, block.viewport, block.frames, input.persistence(block)});
-    } catch (const InputError&) {
-      continue;  // the scene's own section says why it cannot be had
+    if (std::ranges::count(left_out, &block) > 0) continue;
+    const Place place{block.scene, block.path};
+    if (blocks[place].empty()) places.push_back(place);
+    blocks[place].push_back(&block);
+  }
+  for (const Place& place : places) {
+    std::vector<const BlockSummary*>& measured = blocks[place];
+    std::ranges::stable_sort(measured, std::ranges::greater(), [](const BlockSummary* block) {
+      return std::pair(block->frames, block->viewport.width * block->viewport.height);
+    });
+    for (const BlockSummary* block : measured) {
+      try {
+        rows.push_back(
+            {block->scene, block->path, block->viewport, block->frames, input.persistence(*block)});
+        break;
+      } catch (const InputError&) {
+        continue;  // the scene's own section says why it cannot be had
+      }
     }
   }
   return rows;
@@ -128,7 +219,8 @@ void add_persistence_fields(const std::vector<PersistenceRow>& rows, Fields& fie
   auto& entries = fields.lists["persistences"];
   for (const PersistenceRow& row : rows) entries.push_back(row_of(row));
   auto& spreads = fields.lists["persistence_spreads"];
-  for (const std::size_t t : {1, 2, 4, 8, 16}) spreads.push_back(spread_at(rows, t));
+  for (const std::size_t t : told_times) spreads.push_back(spread_at(rows, t));
+  add_answer(rows, fields);
 }
 
 }  // namespace vislab

@@ -15,9 +15,11 @@ namespace vislab {
 inline constexpr std::uint64_t least_persistence_cases = 20;
 
 /// Counts of each scene and path on which a method was measured that builds on what was hidden
-/// before (occlusion.chc and its kin), each once. Those whose scene is no longer what was measured
-/// are left out. Truth of all frames is read: about 10 ms a frame.
-std::vector<PersistenceRow> persistence_rows(const ReportInput& input);
+/// before (occlusion.chc and its kin), each once: where it was measured in several ways, the block
+/// with the most frames, then the most pixels. Those whose scene is no longer what was measured are
+/// left out, and so are the blocks in `left_out`. Truth of all frames is read: about 10 ms a frame.
+std::vector<PersistenceRow> persistence_rows(const ReportInput& input,
+                                             const std::vector<const BlockSummary*>& left_out);
 
 /// Adds the fields of templates/persistence.md. Without rows, the section stays away.
 void add_persistence_fields(const std::vector<PersistenceRow>& rows, Fields& fields);

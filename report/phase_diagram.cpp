@@ -49,14 +49,18 @@ std::optional<Place> place_of(const std::string& device) {
   return place;
 }
 
+/// A scene's name with a star for every word that is a number: "phase_hidden_*_heavy" of
+/// phase_hidden_60_heavy. Of box_field_100k no word is.
 std::string family_of(const std::string& scene) {
   std::string family;
-  for (const char c : scene) {
-    const bool is_digit = c >= '0' && c <= '9';
-    const bool repeats = c == '_' && family.ends_with('_');
-    if (!is_digit && !repeats) family += c;
+  for (std::size_t at = 0; at <= scene.size();) {
+    const std::size_t end = std::min(scene.find('_', at), scene.size());
+    const std::string word = scene.substr(at, end - at);
+    const bool is_number =
+        !word.empty() && word.find_first_not_of("0123456789") == std::string::npos;
+    family += (at == 0 ? "" : "_") + (is_number ? "*" : word);
+    at = end + 1;
   }
-  while (family.ends_with('_')) family.pop_back();
   return family;
 }
 
@@ -81,25 +85,89 @@ std::optional<PhaseCell> cell_of(const BlockSummary& block) {
 /// Blocks of one diagram.
 struct Group {
   std::string title;
+  /// What blocks of different diagrams may differ in while they share their title, as it is added
+  /// to that then.
+  std::vector<std::string> facts;
   std::vector<std::pair<double, const BlockSummary*>> blocks;  // with their latency
 };
 
+/// Dials but for the latency, as text; two fits of the same preset differ in it.
+std::string dials_of(const BlockSummary& block) {
+  if (block.device_models.empty()) return {};
+  GpuModel model = block.device_models.front();
+  model.latency_us = 0.0;
+  return to_text(model);
+}
+
+/// Adds to titles that several groups share what the groups differ in.
+void tell_apart(std::vector<Group>& groups) {
+  std::map<std::string, std::vector<Group*>> same;
+  for (Group& group : groups) same[group.title].push_back(&group);
+  for (const auto& [title, members] : same) {
+    for (std::size_t fact = 0; fact < members.front()->facts.size(); ++fact) {
+      const auto is_first = [&](const Group* group) {
+        return group->facts[fact] == members.front()->facts[fact];
+      };
+      if (std::ranges::all_of(members, is_first)) continue;
+      for (Group* group : members) group->title += ", " + group->facts[fact];
+    }
+  }
+}
+
 std::vector<Group> groups_of(const std::vector<BlockSummary>& blocks) {
-  std::map<std::string, Group> groups;
+  std::map<std::vector<std::string>, Group> groups;  // by title and facts
   for (const BlockSummary& block : blocks) {
     const std::optional<Place> place = place_of(block.device);
-    if (!place) continue;
-    const std::string size =
-        std::to_string(block.viewport.width) + " × " + std::to_string(block.viewport.height);
-    Group& group = groups[family_of(block.scene) + " on " + place->device + ", " + size];
+    // Times of fits that differ do not belong beside each other.
+    if (!place || block.device_models.size() > 1) continue;
+    const std::string title = family_of(block.scene) + " on " + place->device + ", " +
+                              std::to_string(block.viewport.width) + " × " +
+                              std::to_string(block.viewport.height);
+    const std::vector<std::string> facts = {std::to_string(block.frames) + " frames",
+                                            std::to_string(block.threads) + " threads",
+                                            "seed " + std::to_string(block.seed), dials_of(block)};
+    std::vector<std::string> key = facts;
+    key.insert(key.begin(), title);
+    Group& group = groups[key];
+    group.title = title;
+    group.facts = facts;
     group.blocks.emplace_back(place->latency_us, &block);
   }
   std::vector<Group> result;
-  for (auto& [title, group] : groups) {
-    group.title = title;
-    result.push_back(std::move(group));
-  }
+  for (auto& [key, group] : groups) result.push_back(std::move(group));
+  tell_apart(result);
   return result;
+}
+
+bool may_take_part(const CellSummary& cell) {
+  const bool by_frustum =
+      cell.culler.starts_with("frustum.") && cell.culler.find(" > ") == std::string::npos;
+  return !cell.anchor && (cell.asks_device || by_frustum) &&
+         cell.guarantee <= Guarantee::image_exact;
+}
+
+bool takes_part(const CellSummary& cell) {
+  return may_take_part(cell) && cell.frame_ms.measured() && is_free_of_errors(cell);
+}
+
+std::string reason_of_absence(const CellSummary& cell) {
+  if (cell.status == ResultCell::Status::failed) return "failed: " + cell.reason;
+  if (cell.status == ResultCell::Status::running) return "is not finished";
+  if (!cell.judged) return "is not judged";
+  return cell.frame_ms.measured() ? "is wrong" : "is not timed";
+}
+
+void add_absences(PhaseDiagram& diagram) {
+  std::map<std::pair<std::string, std::string>, std::size_t> counts;
+  for (const BlockSummary* block : diagram.blocks) {
+    for (const CellSummary& cell : block->cells) {
+      if (!may_take_part(cell) || takes_part(cell)) continue;
+      ++counts[{cell.culler, reason_of_absence(cell)}];
+    }
+  }
+  for (const auto& [what, count] : counts) {
+    diagram.absences.push_back({what.first, what.second, count});
+  }
 }
 
 void add_winners(PhaseDiagram& diagram) {
@@ -243,14 +311,7 @@ std::string phase_letter(std::size_t winner) {
 std::vector<const CellSummary*> phase_contestants(const BlockSummary& block) {
   std::vector<const CellSummary*> cells;
   for (const CellSummary& cell : block.cells) {
-    const bool by_frustum =
-        cell.culler.starts_with("frustum.") && cell.culler.find(" > ") == std::string::npos;
-    if (cell.anchor || !cell.judged || !cell.frame_ms.measured() ||
-        !(cell.asks_device || by_frustum)) {
-      continue;
-    }
-    if (cell.guarantee > Guarantee::image_exact || !is_free_of_errors(cell)) continue;
-    cells.push_back(&cell);
+    if (takes_part(cell)) cells.push_back(&cell);
   }
   return cells;
 }
@@ -270,12 +331,13 @@ std::vector<PhaseDiagram> phase_diagrams(
     std::ranges::sort(diagram.latencies_us);
     const auto repeated = std::ranges::unique(diagram.latencies_us);
     diagram.latencies_us.erase(repeated.begin(), repeated.end());
-    std::map<std::string, PhaseRow> rows;  // by scene and path
+    std::map<std::vector<std::string>, PhaseRow> rows;  // by scene and path
     for (const auto& [latency, block] : group.blocks) {
       if (diagram.latencies_us.size() < 2) break;
-      PhaseRow& row = rows[block->scene + ' ' + block->path];
+      PhaseRow& row = rows[{block->scene, block->path, block->scene_hash, block->path_hash}];
       if (row.scene.empty()) {
         row.scene = block->scene;
+        row.path = block->path;
         row.by_latency.resize(diagram.latencies_us.size());
         try {
           row.hidden_share = hidden_share(*block);
@@ -293,6 +355,7 @@ std::vector<PhaseDiagram> phase_diagrams(
     if (diagram.rows.size() < 2) continue;
     std::ranges::stable_sort(diagram.rows, {}, &PhaseRow::hidden_share);
     add_winners(diagram);
+    add_absences(diagram);
     if (!diagram.winners.empty()) diagrams.push_back(std::move(diagram));
   }
   return diagrams;

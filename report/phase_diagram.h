@@ -21,9 +21,15 @@ struct PhaseCell {
 };
 
 struct PhaseRow {
-  std::string scene;
+  std::string scene, path;
   double hidden_share = 0.0;                         // measured
   std::vector<std::optional<PhaseCell>> by_latency;  // none: not measured
+};
+
+/// Why a method that asks the device or culls by the frustum took no part in some cells.
+struct PhaseAbsence {
+  std::string culler, reason;
+  std::size_t cells = 0;
 };
 
 struct PhaseDiagram {
@@ -32,6 +38,7 @@ struct PhaseDiagram {
   std::vector<PhaseRow> rows;               // by ascending share
   std::vector<const BlockSummary*> blocks;  // of which it speaks
   std::vector<std::string> winners;         // those that win anywhere, the most frequent first
+  std::vector<PhaseAbsence> absences;       // by culler; not of methods that promise less
 };
 
 /// Who may win in a block: methods that are right, judged and timed, and that ask the device or
@@ -39,9 +46,12 @@ struct PhaseDiagram {
 /// that methods which do theirs there would win for nothing.
 std::vector<const CellSummary*> phase_contestants(const BlockSummary& block);
 
-/// Diagrams of blocks on modelled devices that differ in latency and scene only, with at least two
-/// latencies and two scenes each. Scenes belong together if their names differ in digits only.
-/// Where `hidden_share` throws InputError, the scene is left out.
+/// Diagrams of blocks on modelled devices that differ in latency, scene and path only, with at
+/// least two latencies and two rows each. Scenes belong together if their names differ only in
+/// words (between underscores) that are numbers. Blocks that differ in anything else (resolution,
+/// frames, threads, seed, dials of the device) stand in diagrams of their own, and blocks whose
+/// cells were measured on several fits of the device in none. Where `hidden_share` throws
+/// InputError, the scene is left out.
 std::vector<PhaseDiagram> phase_diagrams(
     const std::vector<BlockSummary>& blocks,
     const std::function<double(const BlockSummary& block)>& hidden_share);

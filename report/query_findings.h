@@ -8,6 +8,7 @@
 
 #include "report/line_chart.h"
 #include "report/phase_diagram.h"
+#include "report/query_picture_choice.h"
 #include "report/report.h"
 
 namespace vislab {
@@ -22,13 +23,23 @@ struct RetestPair {
   double aligned_worst_ms = 0.0, random_worst_ms = 0.0;
 };
 
+/// Queries a second of the frame's whole time by the size of bunches: lines of all methods, scenes
+/// and paths that were measured with several sizes on one device.
+struct BunchChart {
+  std::string device;
+  LineChart chart;
+};
+
 struct QueryFindings {
   std::vector<PhaseDiagram> phases;
   std::vector<RetestPair> retests;
   /// The pair of each title that differs most; a few of them, the greatest difference first.
   std::vector<std::size_t> charted_retests;
-  /// Queries a second by the size of bunches; without a series if there are none.
-  LineChart bunches;
+  std::vector<BunchChart> bunches;  // in the blocks' order
+  std::vector<QueryPictureChoice> pictures;
+
+  /// The blocks that phase diagrams speak of. They are too many for sections and rows of their own.
+  std::vector<const BlockSummary*> diagram_blocks() const;
 };
 
 QueryFindings find_queries(const ReportInput& input);
@@ -37,6 +48,6 @@ QueryFindings find_queries(const ReportInput& input);
 std::string query_chart_script(const QueryFindings& findings);
 std::string phase_file_name(std::size_t phase);    // "phases-1.svg"
 std::string retest_file_name(std::size_t retest);  // "retests-1.svg"
-inline constexpr const char* bunch_file_name = "bunches.svg";
+std::string bunch_file_name(std::size_t chart);    // "bunches-1.svg"
 
 }  // namespace vislab

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/scene/error.h"
+#include "report/device_fits.h"
 #include "report/format.h"
 
 namespace vislab {
@@ -12,23 +14,13 @@ std::string counter_of(const CellSummary& cell, const std::string& name) {
   return found == cell.counters.end() ? "–" : format_number(found->second);
 }
 
-/// Methods that rasterise themselves count queries, too, but ask no device.
-bool asks(const CellSummary& cell) {
-  const auto found = cell.counters.find("queries");
-  return cell.asks_device && found != cell.counters.end() && found->second > 0.0 &&
-         cell.guarantee != Guarantee::erroneous;
-}
-
-bool has_diagram(const QueryFindings& findings, const BlockSummary& block) {
-  return std::ranges::any_of(findings.phases, [&](const PhaseDiagram& diagram) {
-    return std::ranges::count(diagram.blocks, &block) > 0;
-  });
-}
-
-Fields row_of(const BlockSummary& block, const CellSummary& cell) {
+Fields row_of(const BlockSummary& block, const CellSummary& cell, const DeviceFits& fits) {
   Fields row;
   row.values["place"] = markdown_text(block.scene + ", " + block.path);
   row.values["device"] = markdown_code(block.device);
+  if (const std::string fit = fits.name_of(block, cell); !fit.empty()) {
+    row.values["device"] += ", " + fit;
+  }
   row.values["method"] = markdown_code(cell.culler);
   row.values["frame_ms"] = format_number(cell.frame_ms.median.value);
   row.values["p99"] = format_number(cell.frame_ms.p99);
@@ -79,10 +71,20 @@ Fields phase_fields(const PhaseDiagram& diagram, std::size_t index) {
   entry.values["over_bvh"] = format_number(over_bvh);
   std::string shares;
   for (const PhaseRow& row : diagram.rows) {
-    shares += (shares.empty() ? "" : ", ") + markdown_text(row.scene) + " " +
+    const bool on_several_paths = std::ranges::count(diagram.rows, row.scene, &PhaseRow::scene) > 1;
+    shares += (shares.empty() ? "" : ", ") +
+              markdown_text(row.scene + (on_several_paths ? " (" + row.path + ")" : "")) + " " +
               format_percent(row.hidden_share);
   }
   entry.values["shares"] = shares;
+  for (const PhaseAbsence& absence : diagram.absences) {
+    Fields missing;
+    missing.values["method"] = markdown_code(absence.culler);
+    missing.values["reason"] = markdown_text(absence.reason);
+    missing.values["cells"] = format_of(absence.cells, diagram.blocks.size());
+    entry.lists["absences"].push_back(std::move(missing));
+  }
+  entry.flag("has_absences", !diagram.absences.empty());
   return entry;
 }
 
@@ -100,14 +102,60 @@ Fields retest_fields(const RetestPair& pair) {
   return row;
 }
 
+/// "`a`, `b` and `c`".
+std::string names_of(const std::vector<const CellSummary*>& cells) {
+  std::string names;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (i > 0) names += i + 1 == cells.size() ? " and " : ", ";
+    names += markdown_code(cells[i]->culler);
+  }
+  return names;
+}
+
+/// All pictures of the chosen blocks, written into `folder`.
+void add_pictures(const ReportInput& input, const QueryFindings& findings,
+                  const std::filesystem::path& folder, Fields& fields) {
+  auto& missing = fields.lists["query_pictures_missing"];
+  bool any = false;
+  for (const QueryPicture picture : query_pictures) {
+    const std::string kind(to_string(picture));
+    auto& entries = fields.lists["query_" + kind];
+    for (const QueryPictureChoice& choice : findings.pictures) {
+      std::vector<const CellSummary*> cells = choice.contrasts;
+      if (picture == QueryPicture::boxes)
+        cells.assign(choice.joint == nullptr ? 0 : 1, choice.joint);
+      if (cells.empty() || !input.query_picture) continue;
+      const std::string file = "query-" + kind + "-" + std::to_string(entries.size() + 1) + ".png";
+      Fields entry;
+      entry.values["file"] = file;
+      entry.values["methods"] = names_of(cells);
+      try {
+        const std::string place = input.query_picture(*choice.block, cells, picture, folder / file);
+        entry.values["place"] = markdown_text(place);
+        entries.push_back(std::move(entry));
+        any = true;
+      } catch (const InputError& error) {
+        // Results outlive the scenes they were measured on; the report is whole without pictures.
+        entry.values["what"] = kind + " of " + markdown_text(choice.block->scene);
+        entry.values["reason"] = markdown_text(error.what());
+        missing.push_back(std::move(entry));
+      }
+    }
+  }
+  fields.flag("has_query_pictures", any || !missing.empty());
+}
+
 }  // namespace
 
-void add_query_fields(const ReportInput& input, const QueryFindings& findings, Fields& fields) {
+void add_query_fields(const ReportInput& input, const QueryFindings& findings,
+                      const std::filesystem::path& folder, Fields& fields) {
+  const DeviceFits fits(input.blocks);
+  const std::vector<const BlockSummary*> charted = findings.diagram_blocks();
   auto& rows = fields.lists["queries"];
   for (const BlockSummary& block : input.blocks) {
-    if (has_diagram(findings, block)) continue;
+    if (std::ranges::count(charted, &block) > 0) continue;
     for (const CellSummary& cell : block.cells) {
-      if (asks(cell)) rows.push_back(row_of(block, cell));
+      if (asks_questions(cell)) rows.push_back(row_of(block, cell, fits));
     }
   }
   auto& phases = fields.lists["phases"];
@@ -125,10 +173,17 @@ void add_query_fields(const ReportInput& input, const QueryFindings& findings, F
   fields.flag("has_query_rows", !rows.empty());
   fields.flag("has_phases", !phases.empty());
   fields.flag("has_retests", !retests.empty());
-  fields.flag("has_bunches", !findings.bunches.series.empty());
-  fields.values["bunch_file"] = bunch_file_name;
-  fields.flag("has_queries", !rows.empty() || !phases.empty() || !retests.empty() ||
-                                 !findings.bunches.series.empty());
+  auto& bunches = fields.lists["bunches"];
+  for (std::size_t i = 0; i < findings.bunches.size(); ++i) {
+    Fields chart;
+    chart.values["device"] = markdown_code(findings.bunches[i].device);
+    chart.values["file"] = bunch_file_name(i);
+    bunches.push_back(std::move(chart));
+  }
+  fields.flag("has_bunches", !bunches.empty());
+  add_pictures(input, findings, folder, fields);
+  fields.flag("has_queries",
+              !rows.empty() || !phases.empty() || !retests.empty() || !bunches.empty());
 }
 
 }  // namespace vislab

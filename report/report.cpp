@@ -73,7 +73,9 @@ void write_text(const fs::path& file, const std::string& text) {
 void draw_charts(const ReportInput& input, const QueryFindings& queries,
                  const std::vector<PersistenceRow>& persistence, const fs::path& work) {
   std::string script;
+  const std::vector<const BlockSummary*> in_diagrams = queries.diagram_blocks();
   for (std::size_t i = 0; i < input.blocks.size(); ++i) {
+    if (std::ranges::count(in_diagrams, &input.blocks[i]) > 0) continue;
     if (charted_cells(input.blocks[i]).empty()) continue;
     script += chart_script(input.blocks[i], chart_file_name(i));
   }
@@ -94,9 +96,10 @@ void write_words(const ReportInput& input, const QueryFindings& queries,
                  const std::vector<PersistenceRow>& persistence, const fs::path& templates,
                  const fs::path& work) {
   const fs::path folder = templates / "templates";
-  Fields fields = report_fields(input, read_template(folder / "verdict.md"), work);
+  Fields fields =
+      report_fields(input, read_template(folder / "verdict.md"), queries.diagram_blocks(), work);
   add_persistence_fields(persistence, fields);
-  add_query_fields(input, queries, fields);
+  add_query_fields(input, queries, work, fields);
   cite_sources(read_template(templates / "bibliography.bib"), fields.lists["methods"]);
   std::string text;
   for (const std::string part : parts) {
@@ -166,8 +169,8 @@ void write_report(const ReportInput& input, const fs::path& template_folder,
     throw InputError("there is nothing to report; measure something with 'vislab run' first");
   }
   const WorkFolder work;
-  const std::vector<PersistenceRow> persistence = persistence_rows(input);
   const QueryFindings queries = find_queries(input);
+  const std::vector<PersistenceRow> persistence = persistence_rows(input, queries.diagram_blocks());
   draw_charts(input, queries, persistence, work.path());
   write_words(input, queries, persistence, template_folder, work.path());
   if (!persistence.empty()) write_text(work.path() / persistence_file, to_json(persistence));

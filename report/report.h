@@ -12,6 +12,7 @@
 #include "experiments/analysis/published.h"
 #include "experiments/analysis/summary.h"
 #include "experiments/show/depth_complexity_picture.h"
+#include "experiments/show/query_pictures.h"
 
 namespace vislab {
 
@@ -39,6 +40,12 @@ struct ReportInput {
   /// Counts how long hidden objects stayed hidden on a block's path. Throws InputError if its scene
   /// or its truth is no longer there. Empty function: no section on it.
   std::function<PersistenceCounts(const BlockSummary& block)> persistence;
+  /// Writes a picture of what methods had the device do in one frame of a block to `file` (PNG), a
+  /// row a cell; returns the place: scene, path, frame and device. Throws InputError if the scene
+  /// is no longer there or a method asked nothing in that frame. Empty function: no pictures.
+  std::function<std::string(const BlockSummary& block, const std::vector<const CellSummary*>& cells,
+                            QueryPicture picture, const std::filesystem::path& file)>
+      query_picture;
   /// The measured share of what lies in the frustum of a block's frames that is hidden. Throws
   /// InputError if its scene or its truth is no longer there. Empty function: no phase diagrams.
   std::function<double(const BlockSummary& block)> hidden_share;

@@ -10,6 +10,7 @@
 #include "report/chart.h"
 #include "report/comparison_sections.h"
 #include "report/depth_section.h"
+#include "report/device_fits.h"
 #include "report/finding.h"
 #include "report/format.h"
 #include "report/method_fields.h"
@@ -47,10 +48,11 @@ std::string in_cell(const Estimate& estimate) {
          "]{.interval}";
 }
 
-Fields speed_fields(const CellSummary& cell, std::size_t number) {
+Fields speed_fields(const CellSummary& cell, std::size_t number, const std::string& fit) {
   Fields row;
   row.values["number"] = std::to_string(number);
-  row.values["method"] = markdown_code(cell.culler);
+  row.values["method"] =
+      markdown_code(cell.culler) + (fit.empty() ? "" : " [" + fit + "]{.interval}");
   row.values["frame_ms"] = in_cell(cell.frame_ms.median);
   row.values["frame_tail"] = format_number(cell.frame_ms.p95) + " · " +
                              format_number(cell.frame_ms.p99) + " · " +
@@ -98,13 +100,15 @@ std::string what_is_missing(const CellSummary& cell) {
   return {};
 }
 
-void add_tables(const BlockSummary& block, Fields& fields) {
+void add_tables(const BlockSummary& block, const DeviceFits& fits, Fields& fields) {
   auto& speed = fields.lists["speed"];
   auto& accuracy = fields.lists["accuracy"];
   auto& missing = fields.lists["not_measured"];
   for (std::size_t i = 0; i < block.cells.size(); ++i) {
     const CellSummary& cell = block.cells[i];
-    if (cell.frame_ms.measured()) speed.push_back(speed_fields(cell, i + 1));
+    if (cell.frame_ms.measured()) {
+      speed.push_back(speed_fields(cell, i + 1, fits.name_of(block, cell)));
+    }
     if (cell.judged) accuracy.push_back(accuracy_fields(cell, i + 1));
     if (const std::string what = what_is_missing(cell); !what.empty()) {
       Fields entry;
@@ -163,7 +167,18 @@ std::string trimmed_to_one_line(const std::string& text) {
   return line;
 }
 
-Fields scene_fields(const ReportInput& input, std::size_t index,
+/// "`dials`", with the fit's name where there are several.
+std::string dials_of(const BlockSummary& block, const DeviceFits& fits) {
+  std::string dials;
+  for (const GpuModel& model : block.device_models) {
+    const std::string fit = fits.name_of(block, model);
+    dials += (dials.empty() ? "" : "; ") + (fit.empty() ? "" : fit + ": ") +
+             markdown_code(to_text(model));
+  }
+  return dials;
+}
+
+Fields scene_fields(const ReportInput& input, std::size_t index, const DeviceFits& fits,
                     const std::string& verdict_template, const std::filesystem::path& folder) {
   const BlockSummary& block = input.blocks[index];
   const std::string title = markdown_text(title_of(input.blocks, block));
@@ -179,8 +194,10 @@ Fields scene_fields(const ReportInput& input, std::size_t index,
   fields.values["rounds"] = rounds_of(block);
   fields.values["threads"] = std::to_string(block.threads);
   fields.values["device"] = markdown_code(block.device);
-  fields.flag("modelled_device", block.device_model.has_value());
-  fields.values["dials"] = block.device_model ? markdown_code(to_text(*block.device_model)) : "";
+  fields.flag("modelled_device", !block.device_models.empty());
+  fields.values["dials"] = dials_of(block, fits);
+  fields.flag("mixed_fits", block.device_models.size() > 1);
+  fields.values["fit_count"] = std::to_string(block.device_models.size());
   fields.values["verdict"] = trimmed_to_one_line(
       fill_template(verdict_template, finding_fields(block, title), "verdict.md"));
   fields.flag("undrawn", !block.drawn);
@@ -191,7 +208,7 @@ Fields scene_fields(const ReportInput& input, std::size_t index,
   fields.values["file"] = chart_file_name(index);
   fields.values["x_meaning"] =
       has_time_axis(block) ? "median time of a frame" : "triangles submitted per frame";
-  add_tables(block, fields);
+  add_tables(block, fits, fields);
   add_pictures(input, block, index, folder, fields);
   return fields;
 }
@@ -205,6 +222,20 @@ Fields floor_fields(const BlockSummary& block, const std::string& title) {
                                        static_cast<double>(block.floor_pixels));
   row.values["undisputed"] = format_count(block.floor_undisputed_px);
   return row;
+}
+
+struct FloorSum {
+  std::uint64_t pixels = 0, disputed = 0, undisputed = 0;
+};
+
+FloorSum floor_of(const std::vector<const BlockSummary*>& blocks) {
+  FloorSum sum;
+  for (const BlockSummary* block : blocks) {
+    sum.pixels += block->floor_pixels;
+    sum.disputed += block->floor_disputed_px;
+    sum.undisputed += block->floor_undisputed_px;
+  }
+  return sum;
 }
 
 /// A fact's name as the report writes it: "build_type" as "Build type".
@@ -303,7 +334,9 @@ std::string chart_file_name(std::size_t block) {
 }
 
 Fields report_fields(const ReportInput& input, const std::string& verdict_template,
+                     const std::vector<const BlockSummary*>& in_diagrams,
                      const std::filesystem::path& folder) {
+  const DeviceFits fits(input.blocks);
   Fields fields;
   fields.values["method_count"] = format_count(count_distinct(input.blocks, true));
   fields.values["scene_count"] = format_count(count_distinct(input.blocks, false));
@@ -312,7 +345,8 @@ Fields report_fields(const ReportInput& input, const std::string& verdict_templa
   auto& noises = fields.lists["noises"];
   for (std::size_t i = 0; i < input.blocks.size(); ++i) {
     const BlockSummary& block = input.blocks[i];
-    Fields scene = scene_fields(input, i, verdict_template, folder);
+    if (std::ranges::count(in_diagrams, &block) > 0) continue;
+    Fields scene = scene_fields(input, i, fits, verdict_template, folder);
     if (block.floor_pixels > 0) floors.push_back(floor_fields(block, scene.values["title"]));
     Fields noise;
     for (const char* name : {"title", "frame_count", "rounds"}) {
@@ -323,7 +357,12 @@ Fields report_fields(const ReportInput& input, const std::string& verdict_templa
     scenes.push_back(std::move(scene));
   }
   fields.flag("has_floors", !floors.empty());
-  add_depth_fields(input, folder, fields);
+  fields.flag("has_diagrams", !in_diagrams.empty());
+  const FloorSum floor = floor_of(in_diagrams);
+  fields.values["diagram_blocks"] = format_count(in_diagrams.size());
+  fields.values["diagram_floor"] = format_of(floor.disputed, floor.pixels);
+  fields.values["diagram_undisputed"] = format_count(floor.undisputed);
+  add_depth_fields(input, in_diagrams, folder, fields);
   fields.lists["guides"] = guide_fields(input.blocks);
   fields.lists["published"] = published_fields(input.published, input.blocks);
   fields.flag("has_published", !fields.lists["published"].empty());

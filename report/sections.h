@@ -9,8 +9,10 @@
 namespace vislab {
 
 /// Fields for all templates of the report. Writes the pictures of the blocks into `folder`; charts
-/// are expected there under chart_file_name(). `verdict_template` is the text of verdict.md.
+/// are expected there under chart_file_name(). `verdict_template` is the text of verdict.md. The
+/// blocks `in_diagrams` only serve as cells of a diagram, so they have no sections of their own.
 Fields report_fields(const ReportInput& input, const std::string& verdict_template,
+                     const std::vector<const BlockSummary*>& in_diagrams,
                      const std::filesystem::path& folder);
 
 /// Name of the chart of the block with that index: "chart-1.svg".

@@ -40,7 +40,7 @@ void model_frame_times(BlockSummary& block) {
   });
   for (CellSummary& cell : block.cells) {
     const auto costs = block.costs.find(cell.machine);
-    if (block.device_model || costs == block.costs.end() || !cell.calibrated) {
+    if (!block.device_models.empty() || costs == block.costs.end() || !cell.calibrated) {
       cell.modelled_frame_ms = nan;
     } else if (!cell.asks_device) {
       cell.modelled_frame_ms = modelled_ms(cell, costs->second);

@@ -146,7 +146,7 @@ OwnFigure own_figure(const PublishedRow& row, const std::vector<BlockSummary>& b
   OwnFigure own;
   if (!row.cannot_be_told.empty()) return own;
   for (const BlockSummary& block : blocks) {
-    if (block.device_model) continue;  // its times are nobody's to compare with
+    if (!block.device_models.empty()) continue;  // its times are nobody's to compare with
     if (block.scene != row.scene || (!row.path.empty() && block.path != row.path)) continue;
     const CellSummary* const cell = find_cell(block, row.culler, row.metric);
     const CellSummary* const against = find_cell(block, row.against, row.metric);

@@ -303,9 +303,13 @@ BlockSummary summarise_block(const std::vector<const JudgedCell*>& cells) {
   block.costs = costs_by_machine(cells);
   for (const JudgedCell* cell : cells) {
     block.frames = std::max(block.frames, static_cast<int>(cell->cell.frames.size()));
-    if (!block.device_model) block.device_model = cell->cell.device_model;
     block.cells.push_back(summarise_cell(*cell));
-    const CellSummary& summary = block.cells.back();
+    CellSummary& summary = block.cells.back();
+    if (const auto& model = cell->cell.device_model) {
+      const auto known = std::ranges::find(block.device_models, *model);
+      summary.device_model = static_cast<std::size_t>(known - block.device_models.begin());
+      if (known == block.device_models.end()) block.device_models.push_back(*model);
+    }
     if (is_none(cell->cell.key) && summary.replicate > 0) block.noise = summary.against_none;
     // The floor belongs to the frames, not to the culler: every drawn cell has the same.
     if (block.floor_pixels == 0 && summary.drawn) {

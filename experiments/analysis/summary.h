@@ -36,7 +36,8 @@ struct CellSummary {
   Granularity granularity = Granularity::object;
   Culls culls = Culls::hidden;
   int rounds = 0;
-  std::string machine;  // id of the one that measured it
+  std::string machine;           // id of the one that measured it
+  std::size_t device_model = 0;  // place in BlockSummary::device_models, if that has any
 
   // Accuracy, sums over all frames unless it says otherwise.
   bool judged = false;       // false: the values below mean nothing
@@ -98,8 +99,9 @@ struct BlockSummary {
   /// False on the device "none": there are no images, and times hold no drawing to be saved.
   bool drawn = true;
   /// The dials of a modelled device, fitted ones included; there frame_ms and draw_ms are the
-  /// device's own clock. Of the first cell that has them.
-  std::optional<GpuModel> device_model;
+  /// device's own clock. More than one if cells were measured on fits that differ, in the cells'
+  /// order; empty for other devices.
+  std::vector<GpuModel> device_models;
   /// Truth against the unculled image, over all frames.
   std::uint64_t floor_pixels = 0, floor_disputed_px = 0, floor_undisputed_px = 0;
   /// none against its A/A control: how far from 1 the interval reaches is the noise of ratios.

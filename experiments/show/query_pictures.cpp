@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include "common/render/modelled_gpu.h"
 #include "common/render/query_boxes.h"
 #include "common/render/query_strip.h"
 #include "common/render/query_timeline.h"
 #include "common/scene/error.h"
+#include "experiments/run/path_run.h"
 
 namespace vislab {
 namespace {
@@ -79,6 +81,30 @@ std::string_view to_string(QueryPicture picture) {
       break;
   }
   return "timeline";
+}
+
+RecordedFrame record_last_frame(const Registry& cullers, const std::string& chain,
+                                const std::string& name, const Scene& scene, const Path& path,
+                                const Viewport& viewport, RenderDevice& device, SceneState& state) {
+  const std::unique_ptr<ICuller> culler = cullers.make(chain);
+  if (!culler->info().needs_device) {
+    throw InputError(name +
+                     " never asks a device; a picture of queries needs a culler that does, such "
+                     "as occlusion.stop_and_wait");
+  }
+  device.load(scene);
+  RecordedDevice recorded(device);
+  TimedDevice timed(recorded);
+  BuildContext context;
+  context.cullers = &cullers;
+  context.device = &timed;
+  culler->build(scene, context);
+  run_path(*culler, scene, path, viewport, 1, state, &timed);
+  RecordedFrame frame{name, recorded.states(), recorded.flushes(), {}};
+  if (const auto* modelled = dynamic_cast<const ModelledGpu*>(&device)) {
+    frame.commands = modelled->log();
+  }
+  return frame;
 }
 
 void write_query_picture(QueryPicture picture, const Scene& scene, const Frame& frame,

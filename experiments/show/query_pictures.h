@@ -7,7 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "common/culler/registry.h"
 #include "common/render/gpu_clock.h"
+#include "common/scene/path.h"
 #include "experiments/show/recorded_device.h"
 
 namespace vislab {
@@ -28,6 +30,13 @@ struct RecordedFrame {
   std::uint64_t flushes = 0;
   std::vector<GpuCommand> commands;  // of a modelled device; else empty
 };
+
+/// Runs a culler over a whole path, for it may live on what it saw before, and keeps what it had
+/// the device do in the last frame. The device is loaded with the scene first. `name` is how
+/// pictures call the culler. Throws InputError for a culler that never asks a device.
+RecordedFrame record_last_frame(const Registry& cullers, const std::string& chain,
+                                const std::string& name, const Scene& scene, const Path& path,
+                                const Viewport& viewport, RenderDevice& device, SceneState& state);
 
 /// Writes a PNG with a row a culler. Throws InputError if a culler asked nothing, if a time line is
 /// wanted of a device that keeps no log, or if the file cannot be written.

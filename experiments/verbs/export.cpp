@@ -86,13 +86,14 @@ void add_costs(const BlockSummary& block, const CellSummary& cell, Row& row) {
   }
 }
 
-/// Of a modelled device.
-void add_device(const BlockSummary& block, Row& row) {
-  if (!block.device_model) {
+/// Of a modelled device, as the cell was measured on it.
+void add_device(const BlockSummary& block, const CellSummary& cell, Row& row) {
+  if (cell.device_model >= block.device_models.size()) {
     row.insert(row.end(), gpu_dials().size(), TableValue());
     return;
   }
-  for (const GpuDial& dial : gpu_dials()) row.emplace_back(dial.value(*block.device_model));
+  const GpuModel& model = block.device_models[cell.device_model];
+  for (const GpuDial& dial : gpu_dials()) row.emplace_back(dial.value(model));
 }
 
 /// Per frame; a counter that the cell does not have does not apply.
@@ -133,7 +134,7 @@ int export_results(const Lab& lab, const std::string& format,
       }
       add_statistics(cell, row);
       add_costs(block, cell, row);
-      add_device(block, row);
+      add_device(block, cell, row);
       add_counters(cell, counters, row);
       table.add(std::move(row));
     }

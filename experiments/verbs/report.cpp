@@ -5,11 +5,13 @@
 
 #include "common/judge/path_truth.h"
 #include "common/scene/error.h"
+#include "experiments/devices/device_spec.h"
 #include "experiments/results/store.h"
 #include "experiments/run/path_run.h"
 #include "experiments/show/depth_complexity_picture.h"
 #include "experiments/show/frame_picture.h"
 #include "experiments/show/hidden_share.h"
+#include "experiments/show/query_pictures.h"
 #include "experiments/show/surface_pictures.h"
 #include "experiments/verbs/present_results.h"
 #include "experiments/verbs/sweep_results.h"
@@ -74,6 +76,40 @@ std::vector<double> stored_frame_times(const std::filesystem::path& results,
   return times;
 }
 
+/// Draws what methods do in the frame after a third of the block's path, on its own device; time
+/// lines, of another device than a modelled one, on the first preset.
+std::string stored_query_picture(const Lab& lab, StoredScenes& scenes, const BlockSummary& block,
+                                 const std::vector<const CellSummary*>& cells, QueryPicture picture,
+                                 const std::filesystem::path& file) {
+  const StoredScene& stored = scenes.of(block, block.cells.front().id);
+  DeviceSpec spec = parse_device(block.device);
+  GpuModel model = block.device_models.empty() ? GpuModel{} : block.device_models.front();
+  if (picture == QueryPicture::timeline && spec.kind != DeviceSpec::Kind::modelled) {
+    const GpuPreset& preset = gpu_presets().front();
+    spec = parse_device("modelled[preset=" + std::string(preset.name) + "]");
+    model = preset.model;
+  }
+  Path path = stored.path;
+  const auto frame_index = static_cast<std::size_t>(block.frames) / 3;
+  path.frames.resize(frame_index + 1);
+  SceneState state(stored.scene);
+  std::vector<RecordedFrame> rows;
+  for (const CellSummary* cell : cells) {
+    const std::unique_ptr<RenderDevice> device = make_device(spec, model);
+    rows.push_back(record_last_frame(lab.cullers, cell->canonical, cell->culler, stored.scene, path,
+                                     block.viewport, *device, state));
+  }
+  Frame frame;
+  frame.index = frame_index;
+  frame.camera = path.frames[frame_index].camera;
+  frame.viewport = block.viewport;
+  frame.objects = state.view();
+  const std::string place =
+      block.scene + ", " + block.path + ", frame " + std::to_string(frame_index);
+  write_query_picture(picture, stored.scene, frame, place, spec.text, rows, file);
+  return place + ", on " + spec.text;
+}
+
 }  // namespace
 
 int report(const Lab& lab, const std::filesystem::path& results,
@@ -101,6 +137,10 @@ int report(const Lab& lab, const std::filesystem::path& results,
   };
   input.hidden_share = [&](const BlockSummary& block) {
     return stored_hidden_share(results, scenes, block);
+  };
+  input.query_picture = [&](const BlockSummary& block, const std::vector<const CellSummary*>& shown,
+                            QueryPicture picture, const std::filesystem::path& file) {
+    return stored_query_picture(lab, scenes, block, shown, picture, file);
   };
   input.frame_times = [&](const CellSummary& cell) { return stored_frame_times(results, cell); };
   write_report(input, lab.report, output);

@@ -3,12 +3,10 @@
 #include <iostream>
 #include <thread>
 
-#include "common/render/modelled_gpu.h"
 #include "common/scene/error.h"
 #include "experiments/calibration/device_fit.h"
 #include "experiments/devices/device_spec.h"
 #include "experiments/matrix/resolution.h"
-#include "experiments/run/path_run.h"
 #include "experiments/show/query_pictures.h"
 #include "experiments/verbs/verbs.h"
 
@@ -22,31 +20,6 @@ QueryPicture picture_of(const std::string& name) {
     known.emplace_back(to_string(picture));
   }
   throw unknown_name("picture of queries", name, known);
-}
-
-/// Runs a culler over the whole path, for it may live on what it saw before, and keeps what it had
-/// the device do in the last frame.
-RecordedFrame record(const Lab& lab, const std::string& name, const Scene& scene, const Path& path,
-                     const Viewport& viewport, RenderDevice& device, SceneState& state) {
-  const std::unique_ptr<ICuller> culler = lab.cullers.make(name);
-  if (!culler->info().needs_device) {
-    throw InputError(lab.cullers.short_name(name) +
-                     " never asks a device; a picture of queries needs a culler that does, such "
-                     "as occlusion.stop_and_wait");
-  }
-  device.load(scene);
-  RecordedDevice recorded(device);
-  TimedDevice timed(recorded);
-  BuildContext context;
-  context.cullers = &lab.cullers;
-  context.device = &timed;
-  culler->build(scene, context);
-  run_path(*culler, scene, path, viewport, 1, state, &timed);
-  RecordedFrame frame{lab.cullers.short_name(name), recorded.states(), recorded.flushes(), {}};
-  if (const auto* modelled = dynamic_cast<const ModelledGpu*>(&device)) {
-    frame.commands = modelled->log();
-  }
-  return frame;
 }
 
 DeviceSpec device_of(const ShowCall& call, QueryPicture picture) {
@@ -93,7 +66,8 @@ int show_queries(const Lab& lab, const ShowCall& call) {
   const GpuModel model = preset_model_of(spec);
   for (const std::string& name : call.cullers) {
     const std::unique_ptr<RenderDevice> device = make_device(spec, model);
-    rows.push_back(record(lab, name, scene, path, viewport, *device, state));
+    rows.push_back(record_last_frame(lab.cullers, name, lab.cullers.short_name(name), scene, path,
+                                     viewport, *device, state));
   }
   Frame frame;
   frame.index = last;

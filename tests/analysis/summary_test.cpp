@@ -86,6 +86,21 @@ TEST(Summary, RoundsOfAnotherSessionAreNotPaired) {
   EXPECT_FALSE(only_cell(judged).against_none.measured());
 }
 
+TEST(Summary, CellsKnowWhichDialsOfTheDeviceTheyWereMeasuredOn) {
+  std::vector<JudgedCell> cells = {make_cell("a", {{2.0}}), make_cell("b", {{2.0}}),
+                                   make_cell("c", {{2.0}})};
+  EXPECT_TRUE(summarise(cells)[0].device_models.empty());
+  for (JudgedCell& cell : cells) cell.cell.device_model = gpu_preset("gpu").model;
+  EXPECT_EQ(summarise(cells)[0].device_models.size(), 1U);
+  cells[1].cell.device_model->latency_us += 1.0;
+  const BlockSummary block = summarise(cells)[0];
+  ASSERT_EQ(block.device_models.size(), 2U);
+  for (const CellSummary& cell : block.cells) {
+    EXPECT_EQ(block.device_models[cell.device_model].latency_us,
+              gpu_preset("gpu").model.latency_us + (cell.culler == "b" ? 1.0 : 0.0));
+  }
+}
+
 TEST(Summary, WithoutAnchorsThereAreTimesButNoRatios) {
   const CellSummary cell = only_cell(make_cell(frustum, {{2.0, 4.0}}));
   EXPECT_TRUE(cell.frame_ms.measured());

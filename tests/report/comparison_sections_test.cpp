@@ -204,7 +204,7 @@ TEST(DepthSection, HasARowForEachSceneAndPathAndThePictureOfTheDeepest) {
     return DepthComplexityTable{{{mean, 40, 1200}, {50.0, 60, 70}, {0.5, 1, 2}}};
   };
   Fields fields;
-  add_depth_fields(input, "out", fields);
+  add_depth_fields(input, {}, "out", fields);
   const auto& rows = fields.lists["depths"];
   ASSERT_EQ(rows.size(), 2U);
   EXPECT_EQ(rows[1].values.at("scene"), "deep");
@@ -214,7 +214,7 @@ TEST(DepthSection, HasARowForEachSceneAndPathAndThePictureOfTheDeepest) {
   EXPECT_EQ(fields.lists["has_depths"].size(), 1U);
 
   Fields none;
-  add_depth_fields(ReportInput(), "out", none);
+  add_depth_fields(ReportInput(), {}, "out", none);
   EXPECT_TRUE(none.lists["has_depths"].empty());
 }
 

@@ -50,6 +50,24 @@ TEST(PersistenceSection, SaysTheExtremesAndHowManyPathsAgreeWithTheFormula) {
   EXPECT_NE(text.find("| 0.267 [t = 1]{.interval} |"), std::string::npos);  // of city_slow
 }
 
+TEST(PersistenceSection, SaysFromTheCountsWhetherTheSceneMatters) {
+  std::vector<PersistenceRow> found = rows();
+  found[2].counts = counts_of(0.95);  // of 1,000; the city's: 0.8695 of 2,000
+  const std::string apart = text_of(found);
+  EXPECT_NE(apart.find("**for objects**"), std::string::npos);
+  EXPECT_NE(apart.find("**No**: at t = 1, 4, 8, 16 the intervals"), std::string::npos) << apart;
+  EXPECT_NE(apart.find("At t = 1, p goes from 0.870 (city) to 0.950 (plant): in the first, hidden "
+                       "things appear 2.61 times as often."),
+            std::string::npos)
+      << apart;
+  EXPECT_NE(apart.find("most give 0.740 (`city_fast`) and 0.999 (`city_slow`)"), std::string::npos);
+  std::vector<PersistenceRow> alike = rows();
+  for (PersistenceRow& row : alike) row.counts = counts_of(0.9);
+  EXPECT_NE(text_of(alike).find("**Nothing speaks against it here**"), std::string::npos);
+  alike.pop_back();
+  EXPECT_NE(text_of(alike).find("**It cannot be told**"), std::string::npos);
+}
+
 TEST(PersistenceSection, StaysAwayWithoutRows) {
   EXPECT_EQ(text_of({}).find_first_not_of("\n "), std::string::npos);
 }
@@ -63,14 +81,17 @@ TEST(PersistenceSection, CountsEachSceneAndPathWithAMethodThatBuildsOnThePastOnc
     }
     input.blocks.push_back(block);
   }
-  EXPECT_TRUE(persistence_rows(input).empty());
+  EXPECT_TRUE(persistence_rows(input, {}).empty());
   input.persistence = [](const BlockSummary& block) {
     if (block.scene == "gone") throw InputError("gone");
     return counts_of(0.9);
   };
-  const std::vector<PersistenceRow> found = persistence_rows(input);
+  const std::vector<PersistenceRow> found = persistence_rows(input, {});
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].scene, "city");
+  input.blocks[1].frames = 2 * input.blocks[0].frames;
+  EXPECT_EQ(persistence_rows(input, {})[0].frames, input.blocks[1].frames);
+  EXPECT_TRUE(persistence_rows(input, {&input.blocks[0], &input.blocks[1]}).empty());
 }
 
 TEST(PersistenceSection, TheChartHasAPanelASceneAndOneLookAPathOfAllScenes) {

@@ -164,6 +164,9 @@ TEST_F(Report, MethodsThatAskTheDeviceHaveASectionWithCharts) {
                        "next best is 2.00 times, over frustum.bvh 2.00 times"),
             std::string::npos);
   EXPECT_EQ(words.find("What was asked"), std::string::npos);  // the diagram says it
+  EXPECT_NE(words.find("Scenes that were run for a diagram of queries only"), std::string::npos);
+  EXPECT_EQ(words.find("On field_10"), std::string::npos);  // no section of its own
+  EXPECT_NE(words.find("On made_up_scene"), std::string::npos);
   write_report(fabricated_input(), templates, folder_);
   EXPECT_EQ(words_of(read(folder_ / "index.html")).find("Who is fastest"), std::string::npos);
 }
@@ -224,6 +227,18 @@ TEST_F(Report, TimesOfSeveralMachinesAreNotComparedAndThatIsSaid) {
   write_report(input, templates, folder_);
   EXPECT_NE(words_of(read(folder_ / "index.html")).find("were measured on 2 machines"),
             std::string::npos);
+}
+
+TEST_F(Report, TimesOfSeveralFitsAreNotComparedAndThatIsSaid) {
+  ReportInput input = fabricated_input();
+  BlockSummary& block = input.blocks[0];
+  block.device = "modelled[preset=osmesa]";
+  block.device_models = {gpu_preset("gpu").model, gpu_preset("modern").model};
+  block.cells.back().device_model = 1;
+  write_report(input, templates, folder_);
+  const std::string words = words_of(read(folder_ / "index.html"));
+  EXPECT_NE(words.find("were measured on 2 fits of the device"), std::string::npos);
+  EXPECT_NE(words.find("none fit 1"), std::string::npos);
 }
 
 TEST_F(Report, NothingToReportIsAnInputError) {
