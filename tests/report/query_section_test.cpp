@@ -306,7 +306,7 @@ TEST(QuerySection, PicturesAreOfTheScenesWithMostChangesAndOfMethodsThatAreRight
                                       "city timeline occlusion.stop_and_wait occlusion.chcpp",
                                       "plant timeline occlusion.stop_and_wait occlusion.chcpp"}));
   ASSERT_EQ(fields.lists["query_boxes"].size(), 1U);
-  EXPECT_EQ(fields.lists["query_boxes"][0].values["place"], "city, frame 3");
+  EXPECT_EQ(fields.lists["query_boxes"][0].values["place"], R"(city\, frame 3)");
   EXPECT_EQ(fields.lists["query_pictures_missing"].size(), 3U);
 }
 
