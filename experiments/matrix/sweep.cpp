@@ -245,9 +245,10 @@ class SweepReader {
  private:
   void read_block_settings() {
     PassSettings pass;
+    const bool dialled_seed = read_seeds();
     read_pass_settings(root_, pass, file_);
     settings_.rounds = pass.rounds;
-    settings_.seed = pass.seed;
+    if (!dialled_seed) seeds_.assign(values_.size(), pass.seed);
     settings_.threads = pass.threads;
     settings_.timeout_s = pass.timeout_s;
     for (const DialValue& value : values_) {
@@ -267,6 +268,22 @@ class SweepReader {
         throw InputError(place(file_, *root_.get("resolution")) + ": " + error.what());
       }
     }
+  }
+
+  /// If the dial is the seed. Then the key is taken out, as it is not a number.
+  bool read_seeds() {
+    const toml::node* const node = root_.get("seed");
+    if (node == nullptr || node->value_exact<std::string>() != std::string(gap)) return false;
+    for (const DialValue& value : values_) {
+      if (!value.whole || *value.whole < 0) {
+        throw InputError(place(file_, *node) +
+                         ": a dial that is the seed needs whole values from 0 on, not " +
+                         value.text);
+      }
+      seeds_.push_back(static_cast<std::uint64_t>(*value.whole));
+    }
+    root_.erase("seed");
+    return true;
   }
 
   void read_methods() {
@@ -342,7 +359,9 @@ class SweepReader {
   void make_blocks() {
     toml::table scene = table_at(root_, "scene", file_);
     scene.insert("description", sweep_.description);
-    std::map<std::tuple<std::string, std::string, int, int, std::string>, std::size_t> known;
+    std::map<std::tuple<std::string, std::string, int, int, std::uint64_t, std::string>,
+             std::size_t>
+        known;
     std::vector<std::vector<std::string>> chains;
     const std::vector<std::string> scenes = files_of(scene, "");
     std::vector<std::string> paths(values_.size());
@@ -352,10 +371,12 @@ class SweepReader {
       block.scene = scenes[i];
       block.path = paths[i];
       block.viewport = viewports_[i];
+      block.seed = seeds_[i];
       block.device = devices_[i];
-      const auto [found, is_new] = known.try_emplace(
-          {block.scene, block.path, block.viewport.width, block.viewport.height, block.device},
-          sweep_.blocks.size());
+      const auto [found, is_new] =
+          known.try_emplace({block.scene, block.path, block.viewport.width, block.viewport.height,
+                             block.seed, block.device},
+                            sweep_.blocks.size());
       if (is_new) {
         block.label = sweep_.name + ": " + sweep_.dial.setting(i);
         sweep_.blocks.push_back(block);
@@ -399,6 +420,7 @@ class SweepReader {
   Block settings_;
   std::vector<Viewport> viewports_;   // by value of the dial
   std::vector<std::string> devices_;  // likewise
+  std::vector<std::uint64_t> seeds_;  // likewise
   Sweep sweep_;
 };
 

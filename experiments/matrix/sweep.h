@@ -29,8 +29,8 @@
 //   source = "…"                   who reports the failure; the range is this lab's prediction
 //   because = "…"                  what the range follows from, in one sentence
 //
-// In the scene, the path, the cullers, the resolution and draw "${dial}" stands for the dial's
-// value: alone in its quotes for the number, within a longer text for its digits.
+// In the scene, the path, the cullers, the resolution, the seed and draw "${dial}" stands for the
+// dial's value: alone in its quotes for the number, within a longer text for its digits.
 //
 // Without at_most and at_most_ratio the limit is: for false_px none at all, for approximate methods
 // 1 % of the pixels compared; for over, over_objects and times twice the first value; for all
@@ -89,7 +89,7 @@ struct Sweep {
   SweepDial dial;
   SweepLimit limit;
   std::vector<SweepMethod> methods;
-  /// Values of the dial that leave scene, path, resolution and device alike share a block.
+  /// Values of the dial that leave scene, path, resolution, seed and device alike share a block.
   std::vector<Block> blocks;
   std::vector<std::size_t> block_of_value;
   /// The scenes and paths that the blocks name, and of a sweep that is not the lab's own its text.

@@ -83,6 +83,20 @@ TEST_F(SweepFileTest, TheDeviceMayDependOnTheDial) {
       << "half a command";
 }
 
+TEST_F(SweepFileTest, TheSeedMayBeTheDial) {
+  const std::string seeds =
+      "[dial]\nname = \"seed\"\nunit = \"\"\nvalues = [1, 2, 3, 5, 8, 13, 21, 34]\n";
+  const std::string field = "[scene.generator]\nkind = \"box_field\"\ncount = 20\n";
+  const Sweep sweep = load("seed = \"${dial}\"\n" + head + seeds + field);
+  ASSERT_EQ(sweep.blocks.size(), 8U);
+  EXPECT_EQ(sweep.blocks[4].seed, 8U);
+  EXPECT_EQ(sweep.blocks[0].scene, sweep.blocks[4].scene);
+  EXPECT_NE(sweep.conditions[0], sweep.conditions[4]);
+  EXPECT_NE(refusal("seed = \"${dial}\"\n" + head + dial + field).find("whole values"),
+            std::string::npos)
+      << "half a seed";
+}
+
 TEST_F(SweepFileTest, AGapAloneInItsQuotesBecomesTheNumberAsItWasWritten) {
   const Sweep sweep = load(head + dial + scene);
   const auto text_of = [&](std::size_t value) {

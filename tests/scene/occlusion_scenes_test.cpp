@@ -187,6 +187,19 @@ TEST(ScreenedRing, HidesTheShareThatItsDialSaysAndNothingElseChanges) {
   }
 }
 
+TEST(ScreenedRing, DividesItsTrianglesAmongAsManyObjectsAsItsDialSays) {
+  ScreenedRingParameters parameters;
+  parameters.sectors = 20;
+  parameters.all_triangles = 2'400'000;
+  for (const std::uint32_t objects : {1U, 25U, 100U}) {
+    parameters.objects = objects;
+    const Scene scene = make_screened_ring(parameters);
+    EXPECT_EQ(scene.meshes[1].triangles.size(), 120'000U / objects);
+  }
+  parameters.all_triangles = 2'400;
+  EXPECT_EQ(make_screened_ring(parameters).meshes[1].triangles.size(), 12U);
+}
+
 TEST(CoveredBars, AreHiddenAtEveryAngleAndTheirBoxesAtNoneButTheFirst) {
   CoveredBarsParameters parameters;
   for (const double angle : {0.0, 10.0, 45.0}) {

@@ -82,6 +82,7 @@ struct ScreenedRingParameters {
   std::uint32_t sectors = 40;        // at least 8
   std::uint32_t objects = 60;        // of a sector, beside its screen
   std::uint32_t min_triangles = 12;  // of an object; a screen has 12
+  std::uint32_t all_triangles = 0;   // of all objects together, or more
   std::uint64_t seed = 1;
 };
 
@@ -89,6 +90,7 @@ struct ScreenedRingParameters {
 /// screens of the share `hidden`, spread evenly, stand before the cubes, 8 m from the origin, and
 /// those of the others behind, at 80 m and as much larger: seen from the origin, and up to about
 /// 0.2 m beside it, the cubes of a sector are all hidden or all seen, and no cube hides another.
+/// A cube has its share of `all_triangles`, but not fewer than min_triangles.
 /// The cubes do not depend on `hidden`, nor does how many pixels a screen covers. Screens come
 /// first.
 Scene make_screened_ring(const ScreenedRingParameters& parameters);

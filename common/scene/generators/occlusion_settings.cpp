@@ -102,6 +102,8 @@ SceneMaker screened_ring(const Settings& table) {
   ring.sectors = whole(table, "sectors", 8, 1000, ring.sectors);
   ring.objects = whole(table, "objects", 1, 100'000, ring.objects);
   ring.min_triangles = whole(table, "min_triangles", 12, most_triangles, ring.min_triangles);
+  ring.all_triangles =
+      whole(table, "all_triangles", 0, most_triangles * ring.sectors, ring.all_triangles);
   ring.seed = seed_of(table);
   return [ring] { return make_screened_ring(ring); };
 }

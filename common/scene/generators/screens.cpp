@@ -39,7 +39,8 @@ glm::dmat4x3 object_at(double distance, double heading, double elevation, double
 Scene make_screened_ring(const ScreenedRingParameters& parameters) {
   constexpr double highest_rad = 20.0 / 360.0 * tau;
   Scene scene;
-  scene.meshes = {cube_mesh(), dense_cube_mesh(parameters.min_triangles)};
+  const std::uint32_t share = parameters.all_triangles / (parameters.sectors * parameters.objects);
+  scene.meshes = {cube_mesh(), dense_cube_mesh(std::max(parameters.min_triangles, share))};
   const double sector = tau / parameters.sectors;
   const double width = 0.6 * sector;  // of what is behind, seen from the origin
   const auto rows = static_cast<std::uint32_t>(
