@@ -113,11 +113,26 @@ class BlockRun {
       if (!runner.anchor && !settings_.filter.empty() &&
           short_name.find(settings_.filter) == std::string::npos &&
           culler.chain.find(settings_.filter) == std::string::npos) {
+        if (device_spec_.is_fitted()) {
+          take_over_fit(store_.load_cell(fresh_cell(culler, "").key.id()));
+        }
         continue;
       }
       runner.cell = fresh_cell(culler, control ? short_name + " (again)" : short_name);
       take_over_stored(runner);
       runners_.push_back(std::move(runner));
+    }
+  }
+
+  bool is_whole(const ResultCell& cell) const {
+    return static_cast<int>(cell.rounds.size()) >= block_.rounds;
+  }
+
+  /// Cells of a block are compared, so they get one fit: that of the first that is done already.
+  void take_over_fit(const std::optional<ResultCell>& stored) {
+    if (!stored || stored_fit_ || stored->status == ResultCell::Status::failed) return;
+    if (is_whole(*stored) && same_circumstances(stored->context, context_)) {
+      stored_fit_ = stored->device_model;
     }
   }
 
@@ -135,13 +150,13 @@ class BlockRun {
     if (stored && !failed && !same_circumstances(stored->context, context_)) {
       // A whole cell of another machine is a result, told apart by its context; of another build,
       // or with rounds missing, it is measured anew.
-      const bool whole = static_cast<int>(stored->rounds.size()) >= block_.rounds;
-      if (!whole || stored->context["machine"] == context_["machine"]) stored.reset();
+      if (!is_whole(*stored) || stored->context["machine"] == context_["machine"]) stored.reset();
     }
-    // What is fitted now is not what its first rounds were measured with.
-    if (stored && !failed && device_spec_.is_fitted() &&
-        static_cast<int>(stored->rounds.size()) < block_.rounds) {
-      stored.reset();
+    if (stored && !failed && device_spec_.is_fitted()) {
+      take_over_fit(stored);
+      const bool another_fit =
+          same_circumstances(stored->context, context_) && stored->device_model != stored_fit_;
+      if (!is_whole(*stored) || another_fit) stored.reset();
     }
     if (stored) {
       const std::string name = runner.cell.culler;
@@ -296,6 +311,7 @@ class BlockRun {
   }
 
   GpuModel fit_of_block() {
+    if (stored_fit_) return *stored_fit_;
     const int threads = device_spec_.drawing_threads(block_.threads);
     const auto known = settings_.device_fits.find(threads);
     if (known != settings_.device_fits.end()) return known->second;
@@ -439,6 +455,7 @@ class BlockRun {
   std::vector<std::string> truth_keys_;
   std::unique_ptr<RenderDevice> device_;  // null: nothing is drawn
   std::optional<GpuModel> device_model_;  // of a modelled device
+  std::optional<GpuModel> stored_fit_;    // of a fitted one, if a cell of the block is done
   std::unique_ptr<TimedDevice> timed_device_;
   std::vector<Runner> runners_;
 };

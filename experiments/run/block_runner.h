@@ -52,11 +52,12 @@ struct CellWatch {
 /// Cells that are done are left alone; the others get the rounds that are missing, interleaved with
 /// the block's anchors in shuffled order. They are saved after each whole round: a round counts
 /// only together with its anchors. What drawing and testing cost is measured before the first
-/// round, unless the settings have it; so are the dials of a modelled device that are fitted. Cells
-/// on a modelled device repeat whatever their methods declare: their times are the device's own,
-/// and a round that gives others is a failure. A cell that fails is stored with its reason. `stop`
-/// ends the run after the present pass. Throws InputError for scenes, paths and results that are
-/// wrong.
+/// round, unless the settings have it; so are the dials of a modelled device that are fitted,
+/// unless a cell of the block is done: the others then get its dials, for they are compared with
+/// it. Cells on a modelled device repeat whatever their methods declare: their times are the
+/// device's own, and a round that gives others is a failure. A cell that fails is stored with its
+/// reason. `stop` ends the run after the present pass. Throws InputError for scenes, paths and
+/// results that are wrong.
 BlockOutcome run_block(const Block& block, const RunSettings& settings, const Registry& registry,
                        Progress& progress, const CellWatch& watch,
                        const volatile std::sig_atomic_t& stop);

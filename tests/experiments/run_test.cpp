@@ -14,12 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What must not differ between runs: sets, counters and truth of every frame, by chain and scene.
+/// What must not differ between runs: sets, counters and truth of every frame, by chain, scene and
+/// device.
 std::map<std::string, std::string> answers(const fs::path& results) {
   std::map<std::string, std::string> all;
   for (const ResultCell& cell : ResultStore::open(results).load_all()) {
-    std::string& text =
-        all[cell.key.chain + " / " + cell.scene + " / " + std::to_string(cell.key.replicate)];
+    std::string& text = all[cell.key.chain + " / " + cell.scene + " / " + cell.key.device + " / " +
+                            std::to_string(cell.key.replicate)];
     for (const CellFrame& frame : cell.frames) {
       text += frame.set + " " + std::to_string(frame.submitted_triangles);
       for (const auto& [name, count] : frame.counters) {
@@ -103,6 +104,33 @@ TEST_F(Run, OnAModelledDeviceEveryTimeRepeatsBitForBit) {
   }
   EXPECT_EQ(asking, 2U);
   EXPECT_EQ(answers(results()), answers(again));
+}
+
+TEST_F(Run, CellsOfABlockShareOneFitHoweverManyRunsTheyTake) {
+  const auto fitted = [&](const std::string& cullers) {
+    return call(
+        folder_.write("fitted.toml",
+                      "rounds = 1\ndraw = \"modelled[preset=osmesa]\"\n[lists]\nculler = [" +
+                          cullers +
+                          "]\nscene = [\"box_field_tiny\"]\nresolution = [\"64x64\"]\n"
+                          "frames = [2]\n"),
+        results());
+  };
+  ASSERT_EQ(run_vislab(fitted("\"frustum.flat\"")).exit_code, 0);
+  // As if another fit had come out, but for one cell, which a run of another day has measured.
+  const ResultStore store = ResultStore::open(results());
+  const std::string other_day = "frustum.flat";
+  for (ResultCell cell : store.load_all()) {
+    cell.device_model->draw_us = cell.culler == other_day ? 99.0 : 77.0;
+    store.save_cell(cell);
+  }
+  ASSERT_EQ(run_vislab(fitted("\"frustum.flat\", \"frustum.bvh\"")).exit_code, 0);
+  std::set<std::string> cullers;
+  for (const ResultCell& cell : store.load_all()) {
+    cullers.insert(cell.culler);
+    EXPECT_EQ(cell.device_model->draw_us, 77.0) << cell.culler;
+  }
+  EXPECT_TRUE(cullers.contains("frustum.bvh"));
 }
 
 TEST_F(Run, FindsWhatIsDone) {
