@@ -60,10 +60,12 @@ constexpr std::array<std::uint32_t, 36> box_indices = {0, 4, 6, 0, 6, 2, 1, 3, 7
 // llvmpipe sorts commands into squares of 64 x 64 pixels (bins) and, once 36 MB are full, hands
 // them over on its own. A query that this cuts in two counts wrongly (seen: 200,000 samples for a
 // box outside of the image, the 2,780th query in a row at 512 x 512; Mesa 22.3). So what waits is
-// kept below a quarter of that, by generous estimates.
+// kept below a quarter of that. Queries are estimated generously, and so are usual triangles; one
+// that covers the whole image takes up to three times its estimate (seen: 15 bytes a bin).
 constexpr std::size_t most_waiting_bytes = std::size_t{9} << 20U;
 constexpr std::size_t query_bytes_a_bin = 256;
-constexpr std::size_t triangle_bytes = 512;
+constexpr std::size_t least_triangle_bytes = 512;
+constexpr std::size_t triangle_bytes_a_bin = 8;
 constexpr int bin_size = 64;
 
 enum ProgramName { object_program, triangle_program, box_program, program_count };
@@ -97,6 +99,9 @@ class OsMesaDevice::Implementation {
   void resize(const GlFunctions& gl, const Viewport& viewport);
   void select(const GlFunctions& gl, ProgramName program);
   void require_frame() const;
+  std::size_t triangle_bytes() const {
+    return std::max(least_triangle_bytes, triangle_bytes_a_bin * bins_);
+  }
   void make_room(const GlFunctions& gl, std::size_t boxes);
   GLuint query_name(QueryId query) const;
   template <typename Value>
@@ -114,6 +119,7 @@ class OsMesaDevice::Implementation {
 
   bool in_frame_ = false;
   Viewport viewport_{0, 0};
+  std::size_t bins_ = 0;           // that the image has
   std::size_t waiting_bytes_ = 0;  // handed to OpenGL since the last flush, estimated
   int selected_ = -1;              // a ProgramName, or -1 if the state must be set anew
 
@@ -236,6 +242,10 @@ void OsMesaDevice::Implementation::resize(const GlFunctions& gl, const Viewport&
   }
   gl.Viewport(0, 0, viewport.width, viewport.height);
   viewport_ = viewport;
+  const auto bins_of = [](int pixels) {
+    return static_cast<std::size_t>((pixels + bin_size - 1) / bin_size);
+  };
+  bins_ = bins_of(viewport.width) * bins_of(viewport.height);
 }
 
 void OsMesaDevice::Implementation::require_frame() const {
@@ -270,7 +280,7 @@ void OsMesaDevice::Implementation::draw(std::span<const ObjectId> objects) {
   select(context_.make_current(), object_program);
   scene_.draw(objects);
   for (const ObjectId object : objects) {
-    waiting_bytes_ += triangle_bytes * scene_.scene()->triangle_count(object);
+    waiting_bytes_ += triangle_bytes() * scene_.scene()->triangle_count(object);
   }
   context_.check("draw");
 }
@@ -279,7 +289,7 @@ void OsMesaDevice::Implementation::draw(std::span<const TriangleRange> ranges) {
   require_frame();
   select(context_.make_current(), object_program);
   scene_.draw(ranges);
-  for (const TriangleRange& range : ranges) waiting_bytes_ += triangle_bytes * range.count;
+  for (const TriangleRange& range : ranges) waiting_bytes_ += triangle_bytes() * range.count;
   context_.check("draw");
 }
 
@@ -292,17 +302,13 @@ void OsMesaDevice::Implementation::draw_ids(std::span<const TriangleRange> range
   require_frame();
   select(context_.make_current(), triangle_program);
   scene_.draw_each_range(ranges);
+  for (const TriangleRange& range : ranges) waiting_bytes_ += triangle_bytes() * range.count;
   context_.check("draw_ids");
 }
 
 /// Hands over what waits if a query might not fit beside it.
 void OsMesaDevice::Implementation::make_room(const GlFunctions& gl, std::size_t boxes) {
-  const auto bins_of = [](int pixels) {
-    return static_cast<std::size_t>((pixels + bin_size - 1) / bin_size);
-  };
-  const std::size_t bytes =
-      query_bytes_a_bin * bins_of(viewport_.width) * bins_of(viewport_.height) +
-      triangle_bytes * 12 * boxes;
+  const std::size_t bytes = query_bytes_a_bin * bins_ + triangle_bytes() * 12 * boxes;
   if (waiting_bytes_ + bytes > most_waiting_bytes) {
     gl.Flush();
     waiting_bytes_ = 0;
