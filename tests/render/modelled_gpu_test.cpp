@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 
 #include "common/geometry/frustum.h"
@@ -230,6 +231,18 @@ TEST(ModelledGpu, KeepsTheBoxesOfEachQuery) {
   EXPECT_THROW(device.boxes(3), std::logic_error);
 }
 
+TEST(ModelledGpu, ModelsThatDifferHaveDifferentDescriptions) {
+  const GpuModel model = gpu_preset("gpu").model;
+  const std::string description = ModelledGpu(model).description();
+  for (const GpuDial& dial : gpu_dials()) {
+    const double value = dial.value(model);
+    const bool is_real = std::holds_alternative<double GpuModel::*>(dial.member);
+    GpuModel other = model;
+    dial.set(other, is_real ? std::nextafter(value, 1e9) : value == 1.0 ? 0.0 : value + 1.0);
+    EXPECT_NE(ModelledGpu(other).description(), description) << dial.name;
+  }
+}
+
 TEST(ModelledGpu, RefusesCallsInAWrongOrderAndQueriesOfEarlierFrames) {
   const Scene scene = wall_and_cubes();
   const SceneState state(scene);
@@ -311,6 +324,20 @@ TEST(GlFunctions, RefuseAContextWhoseQueriesCountNothing) {
   }
   gl.GetQueryiv = [](GLenum, GLenum, GLint* bits) { *bits = 32; };
   EXPECT_NO_THROW(require_queries(gl));
+}
+
+TEST(GlContext, TellsAnErrorWithTheCallsAfterWhichItWasFound) {
+  GlContext context;
+  const GlFunctions& gl = context.make_current();
+  EXPECT_NO_THROW(context.check("nothing"));
+  gl.Enable(0xFFFF);
+  try {
+    context.check("a batch of queries");
+    FAIL() << "an error of OpenGL was passed over";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("a batch of queries"), std::string::npos);
+  }
+  EXPECT_NO_THROW(context.check("an error that was told"));
 }
 
 TEST(GlFunctions, NameALostContext) {
