@@ -19,6 +19,20 @@ double boxes_a_query(const CellSummary* cell) {
   return counter_of(*cell, "query_boxes") / counter_of(*cell, "queries");
 }
 
+/// Questions asked beyond what was kept, a frame. Of a method that asks about each object alone,
+/// the objects that it found hidden; of others less.
+double found_hidden(const CellSummary* cell) {
+  return counter_of(*cell, "queries") - cell->kept_objects;
+}
+
+/// Methods with parameters that are not the usual ones stand aside for those without.
+void keep_usual(std::vector<const CellSummary*>& cells) {
+  const auto is_variant = [](const CellSummary* cell) {
+    return cell->culler.find('[') != std::string::npos;
+  };
+  if (!std::ranges::all_of(cells, is_variant)) std::erase_if(cells, is_variant);
+}
+
 QueryPictureChoice choice_of(const BlockSummary& block) {
   QueryPictureChoice choice;
   choice.block = &block;
@@ -28,6 +42,8 @@ QueryPictureChoice choice_of(const BlockSummary& block) {
     if (is_free_of_errors(cell) && cell.frame_ms.measured()) cells.push_back(&cell);
   }
   if (cells.empty()) return choice;
+  keep_usual(cells);
+  choice.found_hidden = found_hidden(*std::ranges::max_element(cells, {}, found_hidden));
   const auto time = [](const CellSummary* cell) { return cell->frame_ms.median.value; };
   for (const CellSummary* cell : {*std::ranges::max_element(cells, {}, changes_of),
                                   *std::ranges::min_element(cells, {}, time),
@@ -49,9 +65,6 @@ bool asks_questions(const CellSummary& cell) {
 
 std::vector<QueryPictureChoice> choose_query_pictures(
     const std::vector<BlockSummary>& blocks, const std::vector<const BlockSummary*>& left_out) {
-  const auto most_changes = [](const QueryPictureChoice& choice) {
-    return changes_of(choice.contrasts.front());
-  };
   std::vector<QueryPictureChoice> choices;  // one a scene
   for (const BlockSummary& block : blocks) {
     if (std::ranges::count(left_out, &block) > 0) continue;
@@ -62,11 +75,11 @@ std::vector<QueryPictureChoice> choose_query_pictures(
     });
     if (same == choices.end()) {
       choices.push_back(std::move(choice));
-    } else if (most_changes(choice) > most_changes(*same)) {
+    } else if (choice.found_hidden > same->found_hidden) {
       *same = std::move(choice);
     }
   }
-  std::ranges::stable_sort(choices, std::ranges::greater(), most_changes);
+  std::ranges::stable_sort(choices, std::ranges::greater(), &QueryPictureChoice::found_hidden);
   choices.resize(std::min(choices.size(), most_scenes));
   return choices;
 }

@@ -7,7 +7,8 @@
 
 namespace vislab {
 
-/// A block, and methods that are right and ask its device.
+/// A block, and methods that are right and ask its device; those with the usual parameters, if any
+/// are.
 struct QueryPictureChoice {
   const BlockSummary* block = nullptr;
   /// The one that changes most often between drawing and asking, the fastest and the one that
@@ -15,10 +16,13 @@ struct QueryPictureChoice {
   std::vector<const CellSummary*> contrasts;
   /// The one with the most boxes in a query, if any asks about several with one; else null.
   const CellSummary* joint = nullptr;
+  /// The most questions that one of the methods asked beyond the objects that it kept, a frame: of
+  /// a method that asks about each object alone, how many it found hidden.
+  double found_hidden = 0.0;
 };
 
-/// Of each scene the block with the most changes a frame of any right method, and of those the two
-/// scenes with the most. Blocks in `left_out` do not count. Pointers lead into `blocks`.
+/// Of each scene the block in which most was found hidden, and of those the two scenes with the
+/// most. Blocks in `left_out` do not count. Pointers lead into `blocks`.
 std::vector<QueryPictureChoice> choose_query_pictures(
     const std::vector<BlockSummary>& blocks, const std::vector<const BlockSummary*>& left_out);
 
