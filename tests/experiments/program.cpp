@@ -5,7 +5,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
+#include <stdexcept>
 #include <thread>
 
 #include "experiments/results/files.h"
@@ -48,11 +50,20 @@ ProgramResult run_vislab(const std::vector<std::string>& arguments) {
 
 void kill_vislab(const std::vector<std::string>& arguments, int after_ms) {
   const TemporaryFolder folder;
+  // The program and the processes that it starts have its end for writing until they are gone, and
+  // with them what they have locked.
+  int alive[2];
+  if (::pipe(alive) != 0) throw std::runtime_error("no pipe");
   const pid_t pid = start(arguments, folder.path() / "out", folder.path() / "err");
+  ::close(alive[1]);
   std::this_thread::sleep_for(std::chrono::milliseconds(after_ms));
   ::kill(-pid, SIGKILL);
   int status = 0;
   ::waitpid(pid, &status, 0);
+  char nothing = 0;
+  while (::read(alive[0], &nothing, 1) < 0 && errno == EINTR) {
+  }
+  ::close(alive[0]);
 }
 
 }  // namespace vislab
