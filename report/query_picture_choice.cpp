@@ -19,10 +19,12 @@ double boxes_a_query(const CellSummary* cell) {
   return counter_of(*cell, "query_boxes") / counter_of(*cell, "queries");
 }
 
-/// Questions asked beyond what was kept, a frame. Of a method that asks about each object alone,
-/// the objects that it found hidden; of others less.
+/// Questions asked beyond what was kept, a frame, times their share: of a method that asks about
+/// each object alone, the objects that it found hidden, and how many of all these are.
 double found_hidden(const CellSummary* cell) {
-  return counter_of(*cell, "queries") - cell->kept_objects;
+  const double asked = counter_of(*cell, "queries");
+  const double hidden = std::max(asked - cell->kept_objects, 0.0);
+  return hidden * hidden / asked;
 }
 
 /// Methods with parameters that are not the usual ones stand aside for those without.

@@ -16,8 +16,8 @@ struct QueryPictureChoice {
   std::vector<const CellSummary*> contrasts;
   /// The one with the most boxes in a query, if any asks about several with one; else null.
   const CellSummary* joint = nullptr;
-  /// The most questions that one of the methods asked beyond the objects that it kept, a frame: of
-  /// a method that asks about each object alone, how many it found hidden.
+  /// Of a method that asks about each object alone: how many it found hidden, a frame, times their
+  /// share of those that it asked about. The most that one of the methods reaches.
   double found_hidden = 0.0;
 };
 
