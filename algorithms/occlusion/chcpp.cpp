@@ -133,6 +133,7 @@ class Chcpp : public ICuller {
     hidden_work_ = 0;
     waiting_triangles_ = 0;
     units_new_ = 0;
+    most_retests_ = std::max<std::size_t>(batch_, units_drawn_now_ / interval_);
     units_drawn_now_ = 0;
     NodeWalk::Visit visit;
     if (asleep) {
@@ -236,8 +237,8 @@ class Chcpp : public ICuller {
   void draw_visible(const NodeWalk::Visit& visit, DrawSink& out) {
     NodeMemory::Node& known = memory_[visit.node];
     Entry entry = {visit};
-    const bool due = known.test_at <= memory_.now() && due_.size() + retests_.size() < batch_ &&
-                     find_boxes(entry);
+    const bool due = known.test_at <= memory_.now() &&
+                     due_.size() + retests_.size() < most_retests_ && find_boxes(entry);
     if (due) {
       known.test_at = memory_.now() + interval_;
       due_.push_back(entry);
@@ -268,6 +269,7 @@ class Chcpp : public ICuller {
   /// What is drawn is handed over now and then, so that the device has something to do meanwhile.
   void draw(const NodeWalk::Visit& visit, DrawSink& out) {
     ++units_drawn_;
+    ++units_drawn_now_;
     drawn_work_ += walk_.hierarchy().work(visit.node);
     waiting_triangles_ += walk_.draw(visit);
     if (hand_over_triangles_ == 0 || waiting_triangles_ < hand_over_triangles_) return;
@@ -407,10 +409,14 @@ class Chcpp : public ICuller {
   std::vector<Retest> retests_;
   std::vector<HiddenQueue::Answer> answers_;
   std::uint64_t drawn_work_ = 0, hidden_work_ = 0;
-  std::uint64_t units_new_ = 0, units_drawn_now_ = 0;  // while asleep
-  std::uint64_t waiting_triangles_ = 0;                // drawn, but not handed over
-  std::uint64_t answer_count_ = 0;                     // about hidden nodes
-  std::uint64_t found_hidden_ = 0;                     // of these
+  std::uint64_t units_new_ = 0;  // while asleep
+  std::uint64_t units_drawn_now_ = 0;
+  // Of a frame: as many as keep to the interval, or a batch, so that a burst of new units is spread
+  // over frames.
+  std::size_t most_retests_ = 0;
+  std::uint64_t waiting_triangles_ = 0;  // drawn, but not handed over
+  std::uint64_t answer_count_ = 0;       // about hidden nodes
+  std::uint64_t found_hidden_ = 0;       // of these
 
   std::uint64_t reasked_ = 0;
   std::uint64_t retests_asked_ = 0;
