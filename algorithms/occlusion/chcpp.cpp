@@ -321,12 +321,14 @@ class Chcpp : public ICuller {
     found_.clear();
     hidden_.read(*device_, threshold_px_, answers_);
     for (const auto& [entry, visible] : answers_) {
-      ++answer_count_;
+      // That a node shows says nothing of what is in it.
+      const bool unit = walk_.hierarchy().is_unit(entry.visit.node);
+      if (unit || !visible) ++answer_count_;
       if (!visible) {
         memory_.note_hidden(entry.visit.node);
         ++found_hidden_;
         hidden_work_ += walk_.hierarchy().work(entry.visit.node);
-      } else if (walk_.hierarchy().is_unit(entry.visit.node)) {
+      } else if (unit) {
         found_.push_back(entry);
       } else {
         take_as_visible(entry.visit, out);

@@ -268,7 +268,6 @@ void add_coherent_cases(std::vector<BenchCase>& cases) {
   for (const Place& place : hiding) {
     contest(place, chcpp, ideal, Bar::at_most(1.11));
     contest(place, ideal, ideal, {});
-    contest(place, chcpp, frustum_only, {});
     part(place, "queries", "queries", 15.0);
     part(place, "state changes", "state_changes", 10.0);
     scatter(place);
