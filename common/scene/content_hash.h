@@ -32,7 +32,8 @@ class ContentHash {
   template <typename Element>
   void add_list(std::span<const Element> list) {
     static_assert(std::is_trivially_copyable_v<Element>);
-    static_assert(std::is_arithmetic_v<Element> || sizeof(Element) == 3 * sizeof(float));
+    static_assert(std::is_arithmetic_v<Element> || sizeof(Element) == 3 * sizeof(float) ||
+                  sizeof(Element) == 3 * sizeof(double));
     add(static_cast<unsigned long long>(list.size()));
     add_bytes(list.data(), list.size_bytes());
   }

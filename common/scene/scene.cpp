@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "common/scene/content_hash.h"
+#include "common/geometry/convex_polygon.h"
 #include "common/scene/error.h"
 #include "common/scene/quake_world.h"
 #include "common/scene/solid_mesh.h"
@@ -112,7 +113,7 @@ std::string hash_of(const Scene& scene) {
   }
   hash.add(scene.portals.size());
   for (const Portal& portal : scene.portals) {
-    hash.add_list(std::span<const glm::vec3>(portal.polygon));
+    hash.add_list(std::span<const glm::dvec3>(portal.polygon));
     hash.add(portal.from);
     hash.add(portal.to);
   }
@@ -164,6 +165,13 @@ void require_cell(CellId cell, std::size_t count, const std::string& where) {
 }
 
 }  // namespace
+
+Portal make_portal(std::vector<glm::dvec3> polygon, CellId from, CellId to) {
+  Portal portal{std::move(polygon), from, to};
+  const glm::dvec3 normal = glm::normalize(area_vector(portal.polygon));
+  portal.plane = {normal, -glm::dot(normal, portal.polygon.front())};
+  return portal;
+}
 
 double determinant(const glm::dmat4x3& transform) {
   return glm::dot(transform[0], glm::cross(transform[1], transform[2]));

@@ -53,13 +53,27 @@ struct Object {
 
 /// A convex opening between two cells. Counter-clockwise seen from cell `from`, world frame.
 struct Portal {
-  std::vector<glm::vec3> polygon;
+  std::vector<glm::dvec3> polygon;
   CellId from = none_id;
   CellId to = none_id;
+  Plane plane{};  // of the polygon; inside is the side of `from`
 };
 
+/// A portal whose plane is found from its corners (Newell).
+Portal make_portal(std::vector<glm::dvec3> polygon, CellId from, CellId to);
+
+/// Inside all planes.
+struct ConvexRegion {
+  Aabb bounds;
+  std::vector<Plane> planes;
+};
+
+/// A room: a union of convex regions, world frame. What lies in it is seen from elsewhere through
+/// portals only.
 struct Cell {
-  Aabb bounds;  // world frame
+  Aabb bounds;
+  std::vector<ConvexRegion> regions;
+  std::vector<ObjectId> objects;  // that reach into it where the scene puts them; ascending
 };
 
 struct QuakeWorld;  // common/scene/quake_world.h

@@ -147,7 +147,7 @@ Scene make_room_ring(const RoomRingParameters& parameters) {
   Random random(parameters.seed);
   for (std::uint32_t k = 0; k < parameters.rooms; ++k) {
     Mesh mesh = room_mesh(ring, k);
-    scene.cells.push_back({bounds_of(mesh.positions)});
+    scene.cells.push_back({bounds_of(mesh.positions), {}, {}});
     scene.objects.push_back({static_cast<MeshId>(scene.meshes.size()), glm::dmat4x3(1.0), k});
     scene.meshes.push_back(std::move(mesh));
     for (std::uint32_t i = 0; i < parameters.boxes_per_room; ++i) {
@@ -159,8 +159,8 @@ Scene make_room_ring(const RoomRingParameters& parameters) {
     const std::uint32_t next = (k + 1) % parameters.rooms;
     const Quad door = partition_quad(ring, next, 0, radii[1], radii[2], 0.0, door_height_m);
     const Quad back = turned_round(door);
-    scene.portals.push_back({{door.begin(), door.end()}, k, next});
-    scene.portals.push_back({{back.begin(), back.end()}, next, k});
+    scene.portals.push_back(make_portal({door.begin(), door.end()}, k, next));
+    scene.portals.push_back(make_portal({back.begin(), back.end()}, next, k));
   }
   return scene;
 }

@@ -123,7 +123,8 @@ Track portal_track(const Scene& scene, double eye_height_m) {
         scene.portals.begin(), scene.portals.end(),
         [&](const Portal& candidate) { return candidate.from == here && candidate.to != before; });
     if (portal == scene.portals.end()) break;
-    const Aabb box = bounds_of(portal->polygon);
+    Aabb box;
+    for (const glm::dvec3& corner : portal->polygon) box.extend(glm::vec3(corner));
     points.emplace_back(box.center().x, box.min.y + eye_height_m, box.center().z);
     before = here;
     here = portal->to;
