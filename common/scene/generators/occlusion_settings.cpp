@@ -7,6 +7,7 @@
 #include "common/scene/error.h"
 #include "common/scene/generators/occlusion.h"
 #include "common/scene/generators/surfaces.h"
+#include "common/scene/generators/swarm.h"
 
 namespace vislab {
 namespace {
@@ -179,9 +180,19 @@ SceneMaker touching_spans(const Settings& table) {
   return [spans] { return make_touching_spans(spans); };
 }
 
+SceneMaker swarm(const Settings& table) {
+  SwarmParameters things;
+  things.count = whole(table, "count", 1, 10'000'000, things.count);
+  things.area_m2 = length(table, "area_m2", 1e-9, things.area_m2);
+  things.width_m = length(table, "width_m", 0.0, things.width_m);
+  things.depth_m = length(table, "depth_m", 0.0, things.depth_m);
+  things.seed = seed_of(table);
+  return [things] { return make_swarm(things); };
+}
+
 using Reader = SceneMaker (*)(const Settings&);
 
-constexpr std::array<std::pair<const char*, Reader>, 14> readers{{
+constexpr std::array<std::pair<const char*, Reader>, 15> readers{{
     {"coplanar_pair", coplanar_pair},
     {"covered_bars", covered_bars},
     {"crossing_quads", crossing_quads},
@@ -194,6 +205,7 @@ constexpr std::array<std::pair<const char*, Reader>, 14> readers{{
     {"scanline_fence", scanline_fence},
     {"screened_ring", screened_ring},
     {"slit_wall", slit_wall},
+    {"swarm", swarm},
     {"tilted_polygons", tilted_polygons},
     {"touching_spans", touching_spans},
 }};
