@@ -1,0 +1,144 @@
+// portal.map_pvs: leaves out what a Quake III world's own potentially visible set says is not seen
+// from the viewer's cluster, and what lies outside the frustum.
+//
+// Idea: the compiler of the world found, for each cluster of leaves, which others can be seen from
+//   anywhere in it. An object lies in all leaves that its triangles reach into, and is kept if any
+//   of them is in a cluster that the viewer's sees.
+// Guarantee: conservative from positions that a player can reach, as far as the map's compiler was:
+//   it drops gaps narrower than its tolerance (0.1 unit, 3 mm, in the common ones). Whoever stands
+//   in a wall, so that the eye or a corner of the near plane's window is in no cluster, keeps
+//   everything in the frustum; from a void outside of the world that has a cluster nothing is
+//   promised.
+// Cost: O(candidates) and at most 6 plane tests for each that is in the set; nothing is computed
+//   but when the viewer's cluster changes.
+// Limits: for Quake III worlds only; other scenes are culled by the frustum alone, a world without
+//   visibility data is refused. Objects that move, doors among them, are tested against the frustum
+//   only. Orthographic cameras, whose rays begin far apart, keep everything in the frustum.
+// Sources: id Software, Quake III Arena (the set's format and use); Teller and Sequin 1991.
+
+#include <algorithm>
+
+#include "algorithms/portal/pvs_culler.h"
+#include "common/culler/registry.h"
+#include "common/scene/error.h"
+#include "common/scene/quake_world.h"
+
+namespace vislab {
+namespace {
+
+using portal_culling::ObjectsByPlace;
+using portal_culling::PvsCuller;
+
+CullerInfo describe() {
+  CullerInfo info;
+  info.name = "portal.map_pvs";
+  info.family = "portal";
+  info.summary =
+      "Keeps what lies in the frustum and in a leaf that a Quake III world's own potentially "
+      "visible set says can be seen from the viewer's cluster.";
+  info.guarantee = Guarantee::conservative;
+  info.repeatability = Repeatability::stateless;
+  info.granularity = Granularity::object;
+  info.culls = Culls::hidden;
+  info.space = Space::object;
+  info.stage = PipelineStage::application;
+  info.cost =
+      "O(candidates), at most 6 plane tests for each that is in the set; objects are marked anew "
+      "only when the viewer's cluster changes";
+  info.limits =
+      "Conservative from positions that a player can reach only, and up to the tolerance of the "
+      "compiler of the map (mostly 3 mm). Scenes that are no Quake III worlds are culled by the "
+      "frustum alone, and so are objects that move and orthographic cameras; worlds without "
+      "visibility data are refused.";
+  info.sources = {"id Software, Quake III Arena: visibility data of IBSP files",
+                  "Teller and Sequin 1991, Visibility Preprocessing for Interactive Walkthroughs"};
+  return info;
+}
+
+/// Places are clusters.
+class MapPvs : public PvsCuller {
+ public:
+  MapPvs() : PvsCuller(describe()) {}
+
+ protected:
+  ObjectsByPlace build_sets(const Scene& scene, const BuildContext&) override {
+    world_ = scene.quake.get();
+    ObjectsByPlace objects;
+    clusters_of_cell_.assign(scene.cells.size(), {});
+    if (world_ == nullptr) return objects;
+    if (world_->visible.empty()) {
+      throw InputError(scene.name +
+                       " holds no visibility data, so portal.map_pvs has no set to look into; use "
+                       "portal.pvs, which computes one");
+    }
+    std::vector<std::pair<std::uint32_t, ObjectId>> pairs;
+    for (ObjectId object = 0; object < scene.object_count(); ++object) {
+      for (const std::uint32_t leaf : world_->leaves_of_object(object)) {
+        const std::int32_t cluster = world_->leaves[leaf].cluster;
+        if (cluster >= 0) pairs.emplace_back(static_cast<std::uint32_t>(cluster), object);
+      }
+    }
+    objects.assign(world_->cluster_count, std::move(pairs));
+    for (std::size_t leaf = 0; leaf < world_->cell_of_leaf.size(); ++leaf) {
+      const CellId cell = world_->cell_of_leaf[leaf];
+      if (cell != none_id) clusters_of_cell_[cell].push_back(world_->leaves[leaf].cluster);
+    }
+    return objects;
+  }
+
+  bool add_seen(const Camera& camera, std::span<std::uint64_t> places) override {
+    if (world_ == nullptr || camera.lens.projection == Projection::orthographic) return false;
+    const Lens& lens = camera.lens;
+    const glm::dvec3 middle = camera.pose.eye - camera.pose.back * lens.near_m;
+    for (const double x : {lens.left, lens.right}) {
+      for (const double y : {lens.bottom, lens.top}) {
+        if (cluster_at(middle + camera.pose.right * x + camera.pose.up * y) < 0) return false;
+      }
+    }
+    const std::int32_t cluster = cluster_at(camera.pose.eye);
+    if (cluster < 0) return false;
+    add_row(cluster, places);
+    return true;
+  }
+
+  bool add_seen_from(CellId cell, std::span<std::uint64_t> places) const override {
+    if (cell >= clusters_of_cell_.size() || clusters_of_cell_[cell].empty()) return false;
+    for (const std::int32_t cluster : clusters_of_cell_[cell]) add_row(cluster, places);
+    return true;
+  }
+
+  std::size_t bytes_of_sets() const override {
+    std::size_t total = 0;
+    for (const auto& clusters : clusters_of_cell_) {
+      total += sizeof(clusters) + clusters.capacity() * sizeof(std::int32_t);
+    }
+    return total;
+  }
+
+ private:
+  std::int32_t cluster_at(const glm::dvec3& point) const {
+    return world_->leaves[world_->leaf_at(point)].cluster;
+  }
+
+  void add_row(std::int32_t cluster, std::span<std::uint64_t> places) const {
+    const std::uint8_t* row =
+        world_->visible.data() + static_cast<std::size_t>(cluster) * world_->bytes_per_cluster;
+    for (std::size_t i = 0; i < (world_->cluster_count + 7U) / 8U; ++i) {
+      places[i / 8] |= std::uint64_t{row[i]} << (8 * (i % 8));
+    }
+  }
+
+  const QuakeWorld* world_ = nullptr;  // null: the scene is none
+  std::vector<std::vector<std::int32_t>> clusters_of_cell_;
+};
+
+}  // namespace
+
+namespace cullers {
+
+CullerEntry portal_map_pvs() {
+  return {describe(), [](const ParameterValues&) { return std::make_unique<MapPvs>(); }};
+}
+
+}  // namespace cullers
+}  // namespace vislab
