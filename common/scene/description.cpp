@@ -52,8 +52,23 @@ ModelSource read_joined_model(const Settings& table) {
   return model;
 }
 
+QuakeCellLimits read_quake_cells(const Settings& table) {
+  QuakeCellLimits limits;
+  const std::string cells = table.text("cells", "leaves");
+  if (cells == "none") {
+    limits.cells = QuakeCellLimits::Cells::none;
+  } else if (cells == "rooms") {
+    limits.cells = QuakeCellLimits::Cells::rooms;
+    limits.smallest_m3 = table.number("smallest_m3", 0.0, 1e9, limits.smallest_m3);
+  } else if (cells != "leaves") {
+    throw InputError(table.where() + ": " +
+                     unknown_name("kind of cells", cells, {"leaves", "none", "rooms"}).what());
+  }
+  return limits;
+}
+
 QuakeSource read_quake(const Settings& table) {
-  const QuakeSource quake{read_file_source(table)};
+  const QuakeSource quake{read_file_source(table), read_quake_cells(table)};
   table.done();
   return quake;
 }

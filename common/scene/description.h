@@ -7,6 +7,7 @@
 // mesh's file has the keys `package` and `file`. Besides, fields know `edge_m` instead of half
 // sizes; objects and the meshes of generators `shape` = "ribbed_sphere" | "bumpy_sphere" instead of
 // a file; the generators that are made for occlusion have their own keys (generators/occlusion.h);
+// `quake3` knows `cells` = "leaves" | "rooms" | "none", and with rooms `smallest_m3`;
 // objects and `mesh` know `up` = "y" | "z", objects `heading_deg`, and every scene without
 // cells `offset`.
 #pragma once
@@ -20,6 +21,7 @@
 
 #include "common/scene/generators/generators.h"
 #include "common/scene/generators/occlusion_settings.h"
+#include "common/scene/quake_world.h"
 
 namespace vislab {
 
@@ -48,6 +50,7 @@ struct ModelSource {
 
 struct QuakeSource {
   FileSource source;
+  QuakeCellLimits cells;
 };
 
 struct RibbedSphereSource {

@@ -123,7 +123,7 @@ class Maker {
     return all;
   }
   Scene operator()(const QuakeSource& quake) const {
-    return import_quake_world(located(quake.source, scene_, folders_));
+    return import_quake_world(located(quake.source, scene_, folders_), quake.cells);
   }
   Scene operator()(const std::vector<PlacedMesh>& placed) const {
     Scene scene;

@@ -1,16 +1,22 @@
 #include "common/scene/quake_cells.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <optional>
+#include <string>
 
+#include "common/scene/error.h"
 #include "common/scene/quake_leaves.h"
 
 namespace vislab {
 namespace {
 
 constexpr double convex_tolerance_m = 0.01;
+/// Leaves' boxes are in whole units; compilers are up to two off.
+constexpr double box_tolerance_m = 4.0 * quake_unit_m;
+constexpr double smallest_opening_m2 = 1e-4;
 
 /// A face as one of its cells sees it.
 struct CellFace {
@@ -45,9 +51,8 @@ class CellMaker {
   }
 
   QuakeCells run() {
-    if (limits_.join_convex) {
-      while (join_pass([&](CellId a, CellId b) { return convex_together(a, b); })) {
-      }
+    if (limits_.cells == QuakeCellLimits::Cells::leaves) return result();
+    while (join_pass([&](CellId a, CellId b) { return convex_together(a, b); })) {
     }
     while (join_pass([&](CellId a, CellId b) {
       return std::min(volume(cells_[a]), volume(cells_[b])) < limits_.smallest_m3;
@@ -104,9 +109,7 @@ class CellMaker {
   }
 
   /// Is no corner of either cell behind a face of the other that they do not share?
-  bool convex_together(CellId a, CellId b) const {
-    return none_behind(a, b) && none_behind(b, a);
-  }
+  bool convex_together(CellId a, CellId b) const { return none_behind(a, b) && none_behind(b, a); }
 
   bool none_behind(CellId a, CellId b) const {
     for (const CellFace& face : cells_[a].faces) {
@@ -228,13 +231,10 @@ class CellMaker {
 
   /// Counter-clockwise seen from where `normal` points to (Andrew's monotone chain).
   static ConvexPolygon hull_in_plane(ConvexPolygon points, const glm::dvec3& normal) {
-    const glm::dvec3 other =
-        std::abs(normal.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
+    const glm::dvec3 other = std::abs(normal.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
     const glm::dvec3 u = glm::normalize(glm::cross(other, normal));
     const glm::dvec3 v = glm::cross(normal, u);
-    const auto key = [&](const glm::dvec3& p) {
-      return std::pair(glm::dot(p, u), glm::dot(p, v));
-    };
+    const auto key = [&](const glm::dvec3& p) { return std::pair(glm::dot(p, u), glm::dot(p, v)); };
     std::ranges::sort(points, {}, key);
     ConvexPolygon hull;
     const auto turns_left = [&](const glm::dvec3& p) {
@@ -259,11 +259,86 @@ class CellMaker {
   std::vector<CellId> cell_of_leaf_;
 };
 
+/// Throws unless what the tree cuts out of the world is the box that the file says; leaves that end
+/// where the world does end elsewhere for the file.
+void require_boxes(const QuakeWorld& world, const LeafShapes& shapes,
+                   const std::vector<std::uint8_t>& open_to_outside) {
+  for (std::uint32_t leaf = 0; leaf < world.leaves.size(); ++leaf) {
+    if (world.leaves[leaf].cluster < 0 || open_to_outside[leaf] != 0) continue;
+    if (shapes.faces_of_leaf[leaf].empty()) continue;
+    Aabb box;
+    for (const std::uint32_t face : shapes.faces_of_leaf[leaf]) {
+      for (const glm::dvec3& corner : shapes.faces[face].polygon) box.extend(glm::vec3(corner));
+    }
+    const Aabb& said = world.leaves[leaf].bounds;
+    const glm::dvec3 difference = glm::max(glm::abs(glm::dvec3(box.min) - glm::dvec3(said.min)),
+                                           glm::abs(glm::dvec3(box.max) - glm::dvec3(said.max)));
+    const double largest = std::max({difference.x, difference.y, difference.z});
+    if (largest <= box_tolerance_m) continue;
+    throw InputError("is damaged: its BSP tree puts leaf " + std::to_string(leaf) + " " +
+                     std::to_string(largest / quake_unit_m) +
+                     " units away from the box that the file gives for it");
+  }
+}
+
+QuakeReport report_of(const QuakeWorld& world, const LeafShapes& shapes,
+                      const std::vector<std::uint8_t>& open_to_outside) {
+  QuakeReport report;
+  report.leaves_open_to_outside =
+      static_cast<std::size_t>(std::ranges::count(open_to_outside, std::uint8_t{1}));
+  std::vector<std::uint8_t> counted(world.visible.empty() ? 0 : world.cluster_count, 0);
+  for (const LeafFace& face : shapes.faces) {
+    if (face.front == none_id || face.back == none_id || world.visible.empty()) continue;
+    const std::int32_t front = world.leaves[face.front].cluster;
+    const std::int32_t back = world.leaves[face.back].cluster;
+    for (const std::int32_t cluster : {front, back}) {
+      if (cluster < 0 || counted[static_cast<std::size_t>(cluster)]++ != 0) continue;
+      if (!world.sees(cluster, cluster)) ++report.blind_clusters;
+    }
+    // Compilers leave tiny portals out.
+    if (front < 0 || back < 0 || area(face.polygon) < smallest_opening_m2) continue;
+    if (!world.sees(front, back) || !world.sees(back, front)) ++report.unseen_neighbours;
+  }
+  return report;
+}
+
 }  // namespace
 
 QuakeCells find_quake_cells(const QuakeWorld& world, const Aabb& bounds,
                             const QuakeCellLimits& limits) {
-  return CellMaker(world, shapes_of_leaves(world, bounds), limits).run();
+  LeafShapes shapes = shapes_of_leaves(world, bounds);
+  std::vector<std::uint8_t> open_to_outside(world.leaves.size(), 0);
+  for (const LeafFace& face : shapes.faces) {
+    if (face.front != none_id && face.back != none_id) continue;
+    const std::uint32_t leaf = face.front == none_id ? face.back : face.front;
+    open_to_outside[leaf] = world.leaves[leaf].cluster >= 0 ? 1 : 0;
+  }
+  require_boxes(world, shapes, open_to_outside);
+  const QuakeReport report = report_of(world, shapes, open_to_outside);
+  QuakeCells found = CellMaker(world, std::move(shapes), limits).run();
+  found.report = report;
+  return found;
+}
+
+void add_quake_cells(Scene& scene, QuakeWorld& world, const QuakeCellLimits& limits) {
+  if (limits.cells == QuakeCellLimits::Cells::none) return;
+  Aabb bounds;
+  for (const Object& object : scene.objects) {
+    bounds.extend(transformed(bounds_of(scene.meshes[object.mesh].positions), object.transform));
+  }
+  QuakeCells found = find_quake_cells(world, bounds, limits);
+  for (ObjectId object = 0; object < scene.objects.size(); ++object) {
+    for (const std::uint32_t leaf : world.leaves_of_object(object)) {
+      const CellId cell = found.cell_of_leaf[leaf];
+      if (cell == none_id) continue;
+      std::vector<ObjectId>& objects = found.cells[cell].objects;
+      if (objects.empty() || objects.back() != object) objects.push_back(object);
+    }
+  }
+  world.report = found.report;
+  world.cell_of_leaf = std::move(found.cell_of_leaf);
+  scene.cells = std::move(found.cells);
+  scene.portals = std::move(found.portals);
 }
 
 }  // namespace vislab

@@ -89,13 +89,18 @@ glm::vec3 to_lab(const Vector& p) {
   return {p[0] * scale, p[2] * scale, -p[1] * scale};
 }
 
+bool is_drawn(const File& file, std::int32_t face) {
+  const FaceRecord& record = file.faces[static_cast<std::size_t>(face)];
+  const Texture& texture = file.textures[static_cast<std::size_t>(record.texture)];
+  return (texture.flags & not_drawn_flag) == 0 && record.type != FaceType::billboard;
+}
+
 Mesh mesh_of_faces(const File& file, const std::vector<std::int32_t>& faces) {
   Mesh raw;
   std::vector<std::uint8_t> of_patch;  // by triangle
   for (const std::int32_t index : faces) {
+    if (!is_drawn(file, index)) continue;
     const FaceRecord& face = file.faces[static_cast<std::size_t>(index)];
-    const Texture& texture = file.textures[static_cast<std::size_t>(face.texture)];
-    if ((texture.flags & not_drawn_flag) != 0 || face.type == FaceType::billboard) continue;
     const bool patch = face.type == FaceType::patch;
     if (patch) {
       add_patch(file, face, raw);

@@ -1,6 +1,7 @@
 #include "common/scene/quake_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <type_traits>
 
@@ -8,6 +9,8 @@
 
 namespace vislab::quake {
 namespace {
+
+constexpr float farthest_units = 131072.0F;  // the format's worlds end there
 
 enum Lump {
   entities_lump = 0,
@@ -118,11 +121,38 @@ std::vector<std::map<std::string, std::string>> parse_entities(const std::string
   return entities;
 }
 
+void require_plane(const File& file, std::int32_t index, const LumpReader& reader) {
+  const PlaneRecord& plane = file.planes[static_cast<std::size_t>(index)];
+  const double length = std::hypot(plane.normal[0], plane.normal[1], plane.normal[2]);
+  if (!(std::abs(length - 1.0) < 1e-3)) {
+    reader.fail("is damaged: the normal of plane " + std::to_string(index) + " has the length " +
+                std::to_string(length) + " instead of 1");
+  }
+  if (!(std::abs(plane.distance) <= 2.0F * farthest_units)) {
+    reader.fail("is damaged: plane " + std::to_string(index) + " is " +
+                std::to_string(plane.distance) + " units from the origin; worlds end at " +
+                std::to_string(farthest_units));
+  }
+}
+
+void require_vertices(const File& file, const FaceRecord& face, const LumpReader& reader) {
+  for (std::int32_t i = 0; i < face.vertex_count; ++i) {
+    const auto at = static_cast<std::size_t>(face.first_vertex + i);
+    for (const float coordinate : file.vertices[at].position) {
+      if (std::abs(coordinate) <= farthest_units) continue;
+      reader.fail("is damaged: vertex " + std::to_string(at) + " of a face is at " +
+                  std::to_string(coordinate) + "; coordinates are numbers up to " +
+                  std::to_string(farthest_units));
+    }
+  }
+}
+
 /// The tree's nodes and leaves, each reached at most once, so that descending always ends.
 void check_tree(const File& file, const LumpReader& reader) {
   if (file.nodes.empty()) reader.fail("has no BSP node");
   if (file.leaves.empty()) reader.fail("has no BSP leaf");
   std::vector<std::uint8_t> reached(file.nodes.size(), 0);
+  std::vector<std::uint8_t> leaf_reached(file.leaves.size(), 0);
   std::vector<std::int64_t> pending{0};
   while (!pending.empty()) {
     const auto index = static_cast<std::size_t>(pending.back());
@@ -132,12 +162,18 @@ void check_tree(const File& file, const LumpReader& reader) {
     }
     const NodeRecord& node = file.nodes[index];
     reader.require_range(node.plane, 1, file.planes.size(), "plane");
+    require_plane(file, node.plane, reader);
     for (const std::int64_t child : node.children) {
       if (child >= 0) {
         reader.require_range(child, 1, file.nodes.size(), "BSP node");
         pending.push_back(child);
       } else {
         reader.require_range(-(child + 1), 1, file.leaves.size(), "BSP leaf");
+        // All that is solid may be one leaf.
+        const auto leaf = static_cast<std::size_t>(-(child + 1));
+        if (leaf_reached[leaf]++ != 0 && file.leaves[leaf].cluster >= 0) {
+          reader.fail("is damaged: BSP leaf " + std::to_string(leaf) + " has two parents");
+        }
       }
     }
   }
@@ -147,6 +183,7 @@ void check_faces(const File& file, const LumpReader& reader) {
   for (const FaceRecord& face : file.faces) {
     reader.require_range(face.texture, 1, file.textures.size(), "texture");
     reader.require_range(face.first_vertex, face.vertex_count, file.vertices.size(), "vertex");
+    require_vertices(file, face, reader);
     switch (face.type) {
       case FaceType::polygon:
       case FaceType::mesh:

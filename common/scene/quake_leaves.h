@@ -18,8 +18,8 @@ namespace vislab {
 
 /// Where two leaves touch.
 struct LeafFace {
-  ConvexPolygon polygon;  // counter-clockwise seen from `front`
-  Plane plane;            // inside is towards `front`
+  ConvexPolygon polygon;                          // counter-clockwise seen from `front`
+  Plane plane;                                    // inside is towards `front`
   std::uint32_t front = none_id, back = none_id;  // none_id: outside of the world's box
 };
 

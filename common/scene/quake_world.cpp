@@ -1,5 +1,6 @@
 #include "common/scene/quake_world.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <numbers>
@@ -7,8 +8,10 @@
 
 #include "common/scene/error.h"
 #include "common/scene/file_bytes.h"
+#include "common/scene/quake_cells.h"
 #include "common/scene/quake_faces.h"
 #include "common/scene/quake_file.h"
+#include "common/scene/quake_reach.h"
 #include "common/scene/text_cursor.h"
 
 namespace vislab {
@@ -103,7 +106,11 @@ void add_places(QuakeWorld& world) {
 class ObjectMaker {
  public:
   ObjectMaker(const quake::File& file, Scene& scene, QuakeWorld& world)
-      : file_(file), scene_(scene), world_(world), taken_(file.faces.size(), 0) {}
+      : file_(file),
+        scene_(scene),
+        world_(world),
+        taken_(file.faces.size(), 0),
+        owner_(file.faces.size(), none_id) {}
 
   void make_all() {
     // A brush model's faces belong to it even if a leaf lists them.
@@ -119,7 +126,9 @@ class ObjectMaker {
           make(faces, "leaf " + std::to_string(i), glm::dvec3(0.0), static_cast<std::uint32_t>(i));
     }
     make(take_model(0), "world faces in no leaf", glm::dvec3(0.0), none_id);
+    const std::size_t of_the_world = scene_.objects.size();
     for (std::size_t m = 1; m < file_.models.size(); ++m) add_brush_model(m, model_faces[m]);
+    list_leaves(of_the_world);
   }
 
  private:
@@ -145,7 +154,37 @@ class ObjectMaker {
     scene_.objects.push_back({static_cast<MeshId>(scene_.meshes.size()), transform, none_id});
     scene_.meshes.push_back(std::move(mesh));
     world_.leaf_of_object.push_back(leaf);
+    for (const std::int32_t face : faces) {
+      if (quake::is_drawn(file_, face)) owner_[static_cast<std::size_t>(face)] = id;
+    }
     return id;
+  }
+
+  /// The first `count` objects are the world's; those behind them move.
+  void list_leaves(std::size_t count) {
+    std::vector<std::vector<std::uint32_t>> lists(scene_.objects.size());
+    for (std::uint32_t i = 0; i < world_.leaves.size(); ++i) {
+      if (world_.leaves[i].cluster < 0) continue;
+      const quake::LeafRecord& leaf = file_.leaves[i];
+      for (std::int32_t k = 0; k < leaf.face_count; ++k) {
+        const std::int32_t face = file_.leaf_faces[static_cast<std::size_t>(leaf.first_face + k)];
+        const ObjectId object = owner_[static_cast<std::size_t>(face)];
+        if (object < count) lists[object].push_back(i);
+      }
+    }
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+      std::vector<std::uint32_t>& leaves = lists[i];
+      const Object& object = scene_.objects[i];
+      if (i < count) {
+        add_leaves_reached(world_, scene_.meshes[object.mesh], object.transform, leaves);
+      }
+      std::ranges::sort(leaves);
+      const auto repeated = std::ranges::unique(leaves);
+      leaves.erase(repeated.begin(), repeated.end());
+      world_.first_leaf.push_back(static_cast<std::uint32_t>(world_.leaf_lists.size()));
+      world_.leaf_lists.insert(world_.leaf_lists.end(), leaves.begin(), leaves.end());
+    }
+    world_.first_leaf.push_back(static_cast<std::uint32_t>(world_.leaf_lists.size()));
   }
 
   void add_brush_model(std::size_t index, const std::vector<std::int32_t>& faces) {
@@ -171,6 +210,7 @@ class ObjectMaker {
   Scene& scene_;
   QuakeWorld& world_;
   std::vector<std::uint8_t> taken_;
+  std::vector<ObjectId> owner_;  // by face; none_id: not drawn
 };
 
 }  // namespace
@@ -192,7 +232,20 @@ bool QuakeWorld::sees(std::int32_t from, std::int32_t to) const {
   return (visible[byte] >> (static_cast<unsigned>(to) % 8U) & 1U) != 0;
 }
 
-Scene import_quake_world(const std::filesystem::path& file) {
+std::string QuakeWorld::doubt_about_sets() const {
+  if (visible.empty()) return "has no potentially visible sets";
+  if (report.blind_clusters > 0) {
+    return "has potentially visible sets that do not fit: " +
+           std::to_string(report.blind_clusters) + " clusters do not see themselves";
+  }
+  if (report.unseen_neighbours > 0) {
+    return "has potentially visible sets that do not fit: clusters at " +
+           std::to_string(report.unseen_neighbours) + " openings do not see each other";
+  }
+  return "";
+}
+
+Scene import_quake_world(const std::filesystem::path& file, const QuakeCellLimits& limits) {
   const quake::File content = quake::read_file(read_bytes(file), file.string());
   Scene scene;
   scene.name = file.stem().string();
@@ -202,6 +255,11 @@ Scene import_quake_world(const std::filesystem::path& file) {
   ObjectMaker(content, scene, *world).make_all();
   if (scene.objects.empty()) {
     throw InputError(file.string() + " holds no face that is drawn; a scene needs at least one");
+  }
+  try {
+    add_quake_cells(scene, *world, limits);
+  } catch (const InputError& error) {
+    throw InputError(file.string() + " " + error.what());
   }
   scene.quake = std::move(world);
   return scene;
@@ -235,6 +293,8 @@ void add_to_hash(ContentHash& hash, const QuakeWorld& world) {
     hash.add(place.eye);
     hash.add(place.heading_rad);
   }
+  hash.add_list(std::span<const std::uint32_t>(world.first_leaf));
+  hash.add_list(std::span<const std::uint32_t>(world.leaf_lists));
   hash.add(world.bytes_per_cluster);
   hash.add_list(std::span<const std::uint8_t>(world.visible));
 }

@@ -1,0 +1,26 @@
+// Which leaves of a Quake III world's tree a mesh reaches into.
+//
+// The file lists faces by leaf, but a world's objects are drawn otherwise than its compiler saw
+// them: patches are cut into triangles here, and corners were rounded to fractions of a unit after
+// the tree was made. So triangles are pushed down the tree once more.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <glm/mat4x3.hpp>
+#include <vector>
+
+#include "common/scene/quake_world.h"
+
+namespace vislab {
+
+/// A triangle that lies this near to a plane of the tree, all of it, is on both sides: an eighth of
+/// a Quake unit, to which compilers round corners.
+inline constexpr double on_plane_m = quake_unit_m / 8.0;
+
+/// Adds the leaves that are not solid and that triangles of the placed mesh reach into; in no
+/// order, some of them more than once. O(triangles · depth).
+void add_leaves_reached(const QuakeWorld& world, const Mesh& mesh, const glm::dmat4x3& transform,
+                        std::vector<std::uint32_t>& leaves);
+
+}  // namespace vislab
