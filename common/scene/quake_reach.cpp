@@ -16,8 +16,11 @@ struct Waiting {
   ConvexPolygon polygon;
 };
 
-void push_down(const QuakeWorld& world, std::vector<Waiting>& waiting,
-               std::vector<std::uint32_t>& leaves) {
+}  // namespace
+
+void add_leaves_reached(const QuakeWorld& world, const std::array<glm::dvec3, 3>& triangle,
+                        std::vector<std::uint32_t>& leaves) {
+  std::vector<Waiting> waiting{{0, {triangle.begin(), triangle.end()}}};
   while (!waiting.empty()) {
     Waiting here = std::move(waiting.back());
     waiting.pop_back();
@@ -47,18 +50,6 @@ void push_down(const QuakeWorld& world, std::vector<Waiting>& waiting,
       waiting.push_back({node.back, std::move(halves.outside)});
       waiting.push_back({node.front, std::move(halves.inside)});
     }
-  }
-}
-
-}  // namespace
-
-void add_leaves_reached(const QuakeWorld& world, const Mesh& mesh, const glm::dmat4x3& transform,
-                        std::vector<std::uint32_t>& leaves) {
-  std::vector<Waiting> waiting;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto corners = world_triangle(mesh, transform, t);
-    waiting.push_back({0, {corners.begin(), corners.end()}});
-    push_down(world, waiting, leaves);
   }
 }
 

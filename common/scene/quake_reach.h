@@ -1,13 +1,13 @@
-// Which leaves of a Quake III world's tree a mesh reaches into.
+// Which leaves of a Quake III world's tree triangles reach into.
 //
 // The file lists faces by leaf, but a world's objects are drawn otherwise than its compiler saw
 // them: patches are cut into triangles here, and corners were rounded to fractions of a unit after
 // the tree was made. So triangles are pushed down the tree once more.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <glm/mat4x3.hpp>
 #include <vector>
 
 #include "common/scene/quake_world.h"
@@ -18,9 +18,9 @@ namespace vislab {
 /// a Quake unit, to which compilers round corners.
 inline constexpr double on_plane_m = quake_unit_m / 8.0;
 
-/// Adds the leaves that are not solid and that triangles of the placed mesh reach into; in no
-/// order, some of them more than once. O(triangles · depth).
-void add_leaves_reached(const QuakeWorld& world, const Mesh& mesh, const glm::dmat4x3& transform,
+/// Adds the leaves that are not solid and that a triangle in the world reaches into; in no order,
+/// some of them more than once. O(depth) if it is small.
+void add_leaves_reached(const QuakeWorld& world, const std::array<glm::dvec3, 3>& triangle,
                         std::vector<std::uint32_t>& leaves);
 
 }  // namespace vislab

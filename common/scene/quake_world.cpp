@@ -176,7 +176,10 @@ class ObjectMaker {
       std::vector<std::uint32_t>& leaves = lists[i];
       const Object& object = scene_.objects[i];
       if (i < count) {
-        add_leaves_reached(world_, scene_.meshes[object.mesh], object.transform, leaves);
+        const Mesh& mesh = scene_.meshes[object.mesh];
+        for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+          add_leaves_reached(world_, world_triangle(mesh, object.transform, t), leaves);
+        }
       }
       std::ranges::sort(leaves);
       const auto repeated = std::ranges::unique(leaves);

@@ -79,12 +79,11 @@ Track read_cut(const Settings& settings, const PathPoints& points) {
   return cut_track(eyes, targets);
 }
 
-Track checked_quake_track(const Scene& scene, int places, const std::string& where) {
+void require_places(const Scene& scene, const std::string& where) {
   if (!scene.quake || scene.quake->places.empty()) {
     throw InputError(where + ": a way between places needs a Quake III world with places where " +
                      "players start or find something");
   }
-  return quake_track(scene, places);
 }
 
 Track checked_portal_track(const Scene& scene, double eye_height_m, const std::string& where) {
@@ -117,19 +116,20 @@ Track read_track(const Settings& settings, const PathPoints& points, const Scene
     return stop_and_go_track(read_walk(settings, points), stops);
   }
   if (kind == "cut") return read_cut(settings, points);
-  if (kind == "places") {
+  if (kind == "places" || kind == "tour") {
     const auto places = static_cast<int>(settings.whole("places", 1, 1000, default_places));
-    return checked_quake_track(scene, places, settings.where());
+    require_places(scene, settings.where());
+    return kind == "tour" ? quake_tour_track(scene, places) : quake_track(scene, places);
   }
   if (kind == "portals") {
     const double height = settings.number("eye_height_m", 0.0, 100.0, 1.6);
     return checked_portal_track(scene, height, settings.where());
   }
-  throw InputError(
-      settings.where() + ": " +
-      unknown_name("kind of path", kind,
-                   {"cut", "orbit", "places", "portals", "recorded", "stop_and_go", "turn", "walk"})
-          .what());
+  throw InputError(settings.where() + ": " +
+                   unknown_name("kind of path", kind,
+                                {"cut", "orbit", "places", "portals", "recorded", "stop_and_go",
+                                 "tour", "turn", "walk"})
+                       .what());
 }
 
 /// `frames` > 0 is the number that is asked for.

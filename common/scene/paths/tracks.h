@@ -72,6 +72,13 @@ Track list_track(std::vector<Pose> poses);
 /// nearest. `places` at most, from the first in the file on. Needs scene.quake with a place.
 Track quake_track(const Scene& scene, int places);
 
+/// Through a Quake III world on foot: between places that players reach, which lie far from each
+/// other, on the shortest ways through the openings between its leaves that a walker's body fits
+/// through, along straight lines where those are free. At each place the camera looks about, a
+/// third of a turn. `places` at most, from the first in the file on; those that cannot be reached
+/// without opening a door are left out. Needs scene.quake with a place.
+Track quake_tour_track(const Scene& scene, int places);
+
 /// Through the portals from cell to cell, by the first portal that does not lead back, until the
 /// first cell is reached again; `eye_height_m` above the portals' lower edges. Needs a portal out
 /// of cell 0.
