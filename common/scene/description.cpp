@@ -10,6 +10,7 @@
 
 #include "common/scene/error.h"
 #include "common/scene/generators/occlusion_settings.h"
+#include "common/scene/generators/rooms_settings.h"
 #include "common/scene/settings.h"
 
 namespace vislab {
@@ -280,7 +281,7 @@ CityParameters read_city(const Settings& table) {
 
 RoomRingParameters read_room_ring(const Settings& table) {
   RoomRingParameters ring;
-  ring.rooms = count_of(table, "rooms", 4, 10'000);
+  ring.rooms = count_of(table, "rooms", 3, 10'000);
   ring.boxes_per_room =
       static_cast<std::uint32_t>(table.whole("boxes_per_room", 0, 100, ring.boxes_per_room));
   ring.seed = seed_of(table);
@@ -309,8 +310,12 @@ void read_generator(const Settings& table, SceneDescription& scene) {
     scene.source = read_room_ring(table);
   } else if (std::optional<SceneMaker> maker = read_occlusion_scene(kind, table)) {
     scene.source = std::move(*maker);
+  } else if (std::optional<SceneMaker> rooms = read_rooms_scene(kind, table)) {
+    scene.source = std::move(*rooms);
   } else {
     std::vector<std::string> known = occlusion_scene_kinds();
+    const std::vector<std::string> rooms_kinds = rooms_scene_kinds();
+    known.insert(known.end(), rooms_kinds.begin(), rooms_kinds.end());
     known.insert(known.end(), {"asteroid_belt", "box_field", "bumpy_sphere", "city",
                                "grazing_slabs", "hares", "houses", "mesh_field", "room_ring"});
     std::sort(known.begin(), known.end());
@@ -334,6 +339,7 @@ SceneDescription read_scene_description(const std::filesystem::path& file) {
   const bool quake = settings.has("quake3");
   const bool objects = settings.has("objects");
   const bool generator = settings.has("generator");
+  if (mesh || meshes || objects) scene.cells = read_cells(settings);
   settings.done();
   if (int{mesh} + int{meshes} + int{quake} + int{objects} + int{generator} != 1) {
     throw InputError(settings.where() +

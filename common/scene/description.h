@@ -9,7 +9,8 @@
 // a file; the generators that are made for occlusion have their own keys (generators/occlusion.h);
 // `quake3` knows `cells` = "leaves" | "rooms" | "none", and with rooms `smallest_m3`;
 // objects and `mesh` know `up` = "y" | "z", objects `heading_deg`, and every scene without
-// cells `offset`.
+// cells `offset`. Beside `mesh`, `meshes` and `objects` there may be `cells` and `portals`
+// (cell_settings.h); buildings have theirs from the generator (generators/rooms_settings.h).
 #pragma once
 
 #include <cstdint>
@@ -19,6 +20,7 @@
 #include <variant>
 #include <vector>
 
+#include "common/scene/cell_settings.h"
 #include "common/scene/generators/generators.h"
 #include "common/scene/generators/occlusion_settings.h"
 #include "common/scene/quake_world.h"
@@ -92,6 +94,7 @@ struct SceneDescription {
   std::filesystem::path folder;
   std::string description;
   std::string default_path;  // empty: fitted to the scene
+  DescribedCells cells;      // of `mesh`, `meshes` and `objects`
   glm::dvec3 offset{0.0};    // added to all objects' places, metres
   std::variant<ModelSource, std::vector<ModelSource>, QuakeSource, std::vector<PlacedMesh>,
                HaresSource, MeshFieldSource, AsteroidBeltParameters, BoxFieldParameters,

@@ -195,6 +195,10 @@ LoadedScene load_described(const std::filesystem::path& file, const DataFolders&
   const SceneDescription description = read_scene_description(file);
   LoadedScene loaded;
   loaded.scene = std::visit(Maker(description, folders), description.source);
+  if (!description.cells.cells.empty()) {
+    loaded.scene.cells = description.cells.cells;
+    loaded.scene.portals = description.cells.portals;
+  }
   if (description.offset != glm::dvec3(0.0)) {
     if (!loaded.scene.cells.empty() || loaded.scene.quake) {
       throw InputError("scene " + description.name +

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <sstream>
 
-#include "common/scene/content_hash.h"
 #include "common/geometry/convex_polygon.h"
+#include "common/scene/cell_objects.h"
+#include "common/scene/content_hash.h"
 #include "common/scene/error.h"
 #include "common/scene/quake_world.h"
 #include "common/scene/solid_mesh.h"
@@ -110,6 +111,15 @@ std::string hash_of(const Scene& scene) {
   for (const Cell& cell : scene.cells) {
     hash.add(glm::dvec3(cell.bounds.min));
     hash.add(glm::dvec3(cell.bounds.max));
+    hash.add(cell.regions.size());
+    for (const ConvexRegion& region : cell.regions) {
+      hash.add(region.planes.size());
+      for (const Plane& plane : region.planes) {
+        hash.add(plane.normal);
+        hash.add(plane.d);
+      }
+    }
+    hash.add_list(std::span<const ObjectId>(cell.objects));
   }
   hash.add(scene.portals.size());
   for (const Portal& portal : scene.portals) {
@@ -228,6 +238,9 @@ void Scene::finish() {
     if (portals[i].polygon.size() < 3) throw InputError(where + " has fewer than three corners");
   }
   require_scale(*this);
+  const bool listed =
+      std::ranges::any_of(cells, [](const Cell& cell) { return !cell.objects.empty(); });
+  if (!cells.empty() && !listed) list_objects_of_cells(*this);
   origin_ = origin_of(bounds_);
   content_hash_ = hash_of(*this);
 }

@@ -72,7 +72,9 @@ TEST(Library, GeneratedScenesAreTheSameInEveryBuild) {
   };
   EXPECT_EQ(hash("box_field_tiny"), "2dd73f40c1ecd8a107aec7b8196565a2");
   EXPECT_EQ(hash("city_tiny"), "3e746c9e647e2f037f52f86bbccccb7c");
-  EXPECT_EQ(hash("room_ring"), "94ae1505ac7618fc67687a3512a675e9");
+  EXPECT_EQ(hash("room_ring"), "f8960ba13870c0e758b670488e0169f1");
+  EXPECT_EQ(hash("room_line"), "eab1663a721eb5ee8c6a944fb1602d41");
+  EXPECT_EQ(hash("house"), "5e3b49f084c9dbf1ab8dac5701c7becb");
   EXPECT_EQ(hash("asteroid_belt_60"), "4c1b14f745a3069b29bc713fe5571b8b");
   EXPECT_EQ(hash("city100_a"), "eb5efdb15253c9499e931c5ac43bd2aa");
   EXPECT_EQ(hash("bumpy_low"), "e44bce4cf1d460720ee82229b6cf4c8b");
@@ -158,8 +160,8 @@ TEST(Library, RefusesDescriptionsThatAreWrong) {
                    "exactly one of the tables"));
   EXPECT_TRUE(
       says(refused(folder, "colour = 1\n[mesh]\nfile = \"a.off\"\n"),
-           "`colour` is not a key; known: default_path, description, generator, mesh, meshes, "
-           "objects, offset, quake3"));
+           "`colour` is not a key; known: cells, default_path, description, generator, mesh, "
+           "meshes, objects, offset, portals, quake3"));
   EXPECT_TRUE(says(refused(folder, "[mesh]\nflie = \"a.off\"\n"), "`file` is missing"));
   EXPECT_TRUE(says(refused(folder, "[mesh]\nfile = \"a.off\"\n"), "a.off does not exist"));
   EXPECT_TRUE(says(refused(folder, "[generator]\nkind = \"forest\"\n"),

@@ -93,7 +93,7 @@ struct RoomRingParameters {
 /// Rooms in a ring, each a cell, joined by door openings, each two portals (one for each
 /// direction). The walls of a room are one object and face inward; boxes stand in the rooms'
 /// corners. Rooms are 5 m high and 10 m deep, doors 2.5 m by 2 m in the middle of the walls; the
-/// ring grows with the number of rooms (at least 4), so that a room is about 10 m long in its
+/// ring grows with the number of rooms (at least 3), so that a room is about 10 m long in its
 /// middle.
 Scene make_room_ring(const RoomRingParameters& parameters);
 

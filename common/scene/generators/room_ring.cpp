@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "common/geometry/random.h"
+#include "common/scene/convex_region.h"
 #include "common/scene/generators/generators.h"
 
 namespace vislab {
@@ -24,6 +25,7 @@ class Ring {
       : rooms_(rooms),
         radius_(std::max(10.0, rooms * 2.0 * half_depth_m / (2.0 * std::numbers::pi))) {}
 
+  std::uint32_t rooms() const { return rooms_; }
   double half_angle() const { return std::numbers::pi / rooms_; }
   double radius() const { return radius_; }
   std::array<double, 4> radii() const {
@@ -122,6 +124,27 @@ Mesh room_mesh(const Ring& ring, std::uint32_t k) {
   return room.mesh;
 }
 
+ConvexPolygon polygon_of(const Quad& quad) { return {quad.begin(), quad.end()}; }
+
+/// The opening between rooms k and k + 1, counter-clockwise seen from k.
+Quad door_quad(const Ring& ring, std::uint32_t k) {
+  const std::array<double, 4> radii = ring.radii();
+  return partition_quad(ring, k + 1, 0, radii[1], radii[2], 0.0, door_height_m);
+}
+
+/// The room itself, and its halves of the two passages.
+Cell room_cell(const Ring& ring, std::uint32_t k) {
+  const std::array<double, 4> radii = ring.radii();
+  const Quad floor = floor_quad(ring, k, 1, k + 1, -1, radii[0], radii[3], 0.0);
+  const Quad before = door_quad(ring, k + ring.rooms() - 1);
+  Cell cell;
+  cell.regions = {prism_region(polygon_of(floor), room_height_m),
+                  prism_region(polygon_of(before), -half_wall_m),
+                  prism_region(polygon_of(door_quad(ring, k)), half_wall_m)};
+  for (const ConvexRegion& region : cell.regions) cell.bounds.extend(region.bounds);
+  return cell;
+}
+
 /// A box on the floor, on either side of the straight way from door to door.
 glm::dmat4x3 furniture(const Ring& ring, std::uint32_t k, Random& random) {
   const double middle = (2.0 * k + 1.0) * ring.half_angle();
@@ -147,20 +170,18 @@ Scene make_room_ring(const RoomRingParameters& parameters) {
   Random random(parameters.seed);
   for (std::uint32_t k = 0; k < parameters.rooms; ++k) {
     Mesh mesh = room_mesh(ring, k);
-    scene.cells.push_back({bounds_of(mesh.positions), {}, {}});
+    scene.cells.push_back(room_cell(ring, k));
     scene.objects.push_back({static_cast<MeshId>(scene.meshes.size()), glm::dmat4x3(1.0), k});
     scene.meshes.push_back(std::move(mesh));
     for (std::uint32_t i = 0; i < parameters.boxes_per_room; ++i) {
       scene.objects.push_back({0, furniture(ring, k, random), k});
     }
   }
-  const std::array<double, 4> radii = ring.radii();
   for (std::uint32_t k = 0; k < parameters.rooms; ++k) {
     const std::uint32_t next = (k + 1) % parameters.rooms;
-    const Quad door = partition_quad(ring, next, 0, radii[1], radii[2], 0.0, door_height_m);
-    const Quad back = turned_round(door);
-    scene.portals.push_back(make_portal({door.begin(), door.end()}, k, next));
-    scene.portals.push_back(make_portal({back.begin(), back.end()}, next, k));
+    const Quad door = door_quad(ring, k);
+    scene.portals.push_back(make_portal(polygon_of(door), k, next));
+    scene.portals.push_back(make_portal(polygon_of(turned_round(door)), next, k));
   }
   return scene;
 }

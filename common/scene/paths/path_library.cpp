@@ -93,6 +93,16 @@ Track checked_portal_track(const Scene& scene, double eye_height_m, const std::s
   return portal_track(scene, eye_height_m);
 }
 
+Track checked_room_tour(const Settings& settings, const Scene& scene) {
+  const auto rooms = static_cast<int>(settings.whole("rooms", 2, 100'000, 12));
+  Track track = room_tour_track(scene, rooms, settings.number("eye_height_m", 0.0, 100.0, 1.6));
+  if (!track.pose) {
+    throw InputError(settings.where() + ": a way through rooms needs a scene with a door out of " +
+                     "its first cell");
+  }
+  return track;
+}
+
 /// The number of frames that is asked for, or the description's, or `own`.
 int frames_of(const Settings& settings, int asked, int own) {
   const auto described = static_cast<int>(settings.whole("frames", 1, 1'000'000, own));
@@ -125,10 +135,11 @@ Track read_track(const Settings& settings, const PathPoints& points, const Scene
     const double height = settings.number("eye_height_m", 0.0, 100.0, 1.6);
     return checked_portal_track(scene, height, settings.where());
   }
+  if (kind == "rooms") return checked_room_tour(settings, scene);
   throw InputError(settings.where() + ": " +
                    unknown_name("kind of path", kind,
-                                {"cut", "orbit", "places", "portals", "recorded", "stop_and_go",
-                                 "tour", "turn", "walk"})
+                                {"cut", "orbit", "places", "portals", "recorded", "rooms",
+                                 "stop_and_go", "tour", "turn", "walk"})
                        .what());
 }
 

@@ -84,6 +84,13 @@ Track quake_tour_track(const Scene& scene, int places);
 /// of cell 0.
 Track portal_track(const Scene& scene, double eye_height_m);
 
+/// Through doors and openings in floors, not through windows, from cell 0 into as many as `rooms`
+/// cells, depth first: what is reached through a cell's first portal is seen before its next one.
+/// It keeps to straight lines from 0.6 m behind a door to 0.6 m before the next, which are free in
+/// convex rooms; `eye_height_m` above the doors' lower edges. Without a pose if no door leads out
+/// of cell 0.
+Track room_tour_track(const Scene& scene, int rooms, double eye_height_m);
+
 /// The building stone of walks: where the camera is and looks at a time. Between two waypoints all
 /// is interpolated linearly; at a jump the camera appears at once.
 struct Waypoint {
