@@ -99,8 +99,9 @@ class LeafShaper {
   void divide(std::int32_t node) {
     const auto [front, back] = children(node);
     const Plane plane = world_.planes[world_.nodes[static_cast<std::size_t>(node)].plane];
-    ConvexPolygon section = square_on(plane, middle_, reach_);
     const std::vector<std::uint32_t> faces = std::move(faces_at(node));
+    if (faces.empty()) return;  // no point of the world comes here
+    ConvexPolygon section = square_on(plane, middle_, reach_);
     for (const std::uint32_t id : faces) {
       if (section.empty()) break;
       PolygonHalves halves = divided(section, faces_[id].plane, leaf_tolerance_m);

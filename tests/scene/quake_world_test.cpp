@@ -209,6 +209,57 @@ TEST_F(QuakeWorldFile, KnowsLeavesVisibilityEntitiesAndPlaces) {
   EXPECT_NEAR(world.places[0].heading_rad, std::acos(-1.0) / 2.0, 1e-12);
 }
 
+std::vector<std::uint32_t> leaves_of(const Scene& scene, ObjectId object) {
+  const auto leaves = scene.quake->leaves_of_object(object);
+  return {leaves.begin(), leaves.end()};
+}
+
+TEST_F(QuakeWorldFile, ListsAllLeavesThatAnObjectReachesInto) {
+  SmallWorld world;
+  const Scene apart = load(world);
+  EXPECT_EQ(leaves_of(apart, 0), (std::vector<std::uint32_t>{1}));
+  EXPECT_EQ(leaves_of(apart, 1), (std::vector<std::uint32_t>{2}));
+  EXPECT_EQ(leaves_of(apart, 2), (std::vector<std::uint32_t>{}));  // the door moves
+  // The floor reaches over the plane, though only leaf 1 lists it.
+  world.vertices[0].position[0] = -16.0F;
+  EXPECT_EQ(leaves_of(load(world), 0), (std::vector<std::uint32_t>{1, 2}));
+  // Leaf 1 lists the patch, though no triangle of it reaches there.
+  world = SmallWorld();
+  world.leaf_faces = {0, 1, 2, 2};
+  world.leaves[1].face_count = 3;
+  world.leaves[2].first_face = 3;
+  world.leaves[2].face_count = 1;
+  const Scene listed = load(world);
+  EXPECT_EQ(listed.object_count(), 2U);
+  EXPECT_EQ(leaves_of(listed, 0), (std::vector<std::uint32_t>{1, 2}));
+}
+
+TEST_F(QuakeWorldFile, GivesCellsTheObjectsThatReachIntoTheirLeaves) {
+  SmallWorld world;
+  world.vertices[0].position[0] = -16.0F;
+  const Scene scene = load(world);
+  ASSERT_EQ(scene.cells.size(), 2U);
+  EXPECT_EQ(scene.quake->cell_of_leaf, (std::vector<CellId>{none_id, 0, 1}));
+  EXPECT_EQ(scene.cells[0].objects, (std::vector<ObjectId>{0}));
+  EXPECT_EQ(scene.cells[1].objects, (std::vector<ObjectId>{0, 1}));
+  EXPECT_EQ(scene.portals.size(), 2U);
+}
+
+TEST_F(QuakeWorldFile, MakesTheCellsThatADescriptionAsksFor) {
+  folder_.write("small.bsp", SmallWorld().bytes());
+  const auto cells = [&](const std::string& keys) {
+    const std::filesystem::path file =
+        folder_.write("small.toml", "[quake3]\nfile = \"small.bsp\"\n" + keys);
+    return load_scene(file.string(), test::repository_data()).scene.cells.size();
+  };
+  EXPECT_EQ(cells(""), 2U);
+  EXPECT_EQ(cells("cells = \"leaves\"\n"), 2U);
+  EXPECT_EQ(cells("cells = \"none\"\n"), 0U);
+  EXPECT_EQ(cells("cells = \"rooms\"\nsmallest_m3 = 5.0\n"), 1U);
+  EXPECT_TRUE(says(input_error([&]() { cells("cells = \"doors\"\n"); }), "`doors`"));
+  EXPECT_TRUE(says(input_error([&]() { cells("smallest_m3 = 5.0\n"); }), "`smallest_m3`"));
+}
+
 TEST_F(QuakeWorldFile, RefusesEveryTruncation) {
   const std::string whole = SmallWorld().bytes();
   for (std::size_t size = 1; size < whole.size(); size += 7) {
@@ -263,8 +314,35 @@ TEST_F(QuakeWorldFile, RefusesIndicesOutOfRange) {
   expect_refused([](SmallWorld& w) { w.leaves[1].cluster = 2; }, "cluster 2 of 2");
   expect_refused([](SmallWorld& w) { w.models[1].face_count = 2; }, "face 3 and 2");
   expect_refused([](SmallWorld& w) { w.visible[4] = 9; }, "visibility sets");
+  expect_refused([](SmallWorld& w) { w.nodes[0].children[1] = -2; }, "BSP leaf 1 has two");
   expect_refused([](SmallWorld& w) { w.nodes.clear(); }, "no BSP node");
   expect_refused([](SmallWorld& w) { w.models.clear(); }, "no model");
+}
+
+TEST_F(QuakeWorldFile, RefusesPlanesAndCornersThatAreNone) {
+  SmallWorld world;
+  world.planes[0].normal[1] = 0.5F;
+  EXPECT_TRUE(says(refused(world), "normal of plane 0"));
+  world = SmallWorld();
+  world.planes[0].normal[0] = std::nanf("");
+  EXPECT_TRUE(says(refused(world), "normal of plane 0"));
+  world = SmallWorld();
+  world.planes[0].distance = -1e30F;
+  EXPECT_TRUE(says(refused(world), "plane 0 is"));
+  world = SmallWorld();
+  world.vertices[5].position[2] = std::nanf("");
+  EXPECT_TRUE(says(refused(world), "vertex 5 of a face"));
+  world.vertices[5].position[2] = 140'000.0F;
+  EXPECT_TRUE(says(refused(world), "coordinates are numbers up to"));
+}
+
+TEST_F(QuakeWorldFile, SaysWhatIsKnownAgainstItsVisibleSets) {
+  EXPECT_TRUE(says(load(SmallWorld()).quake->doubt_about_sets(), "1 clusters do not see them"));
+  SmallWorld world;
+  world.visible.clear();
+  EXPECT_TRUE(says(load(world).quake->doubt_about_sets(), "has no potentially visible sets"));
+  world.visible = std::string("\2\0\0\0\1\0\0\0\3\3", 10);
+  EXPECT_EQ(load(world).quake->doubt_about_sets(), "");
 }
 
 TEST_F(QuakeWorldFile, RefusesEntitiesThatDoNotEnd) {

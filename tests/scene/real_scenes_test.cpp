@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "common/geometry/random.h"
 #include "common/scene/library.h"
+#include "common/scene/orientation.h"
 #include "common/scene/quake_world.h"
 #include "tests/scene/test_files.h"
 
@@ -168,6 +170,112 @@ TEST_F(OpenArena, IsWalkedWithinItsOpenLeaves) {
   }
   EXPECT_EQ(load_path("quake_walk", *scene_, {512, 512}, 0, repository_data()).content_hash(),
             path.content_hash());
+}
+
+/// The first triangle that a ray meets, from either side, one by one.
+struct Hit {
+  ObjectId object = none_id;
+  double distance = std::numeric_limits<double>::infinity();
+};
+
+Hit first_hit(const Scene& scene, const glm::dvec3& eye, const glm::dvec3& direction) {
+  Hit hit;
+  for (ObjectId id = 0; id < scene.object_count(); ++id) {
+    for (std::uint32_t t = 0; t < scene.triangle_count(id); ++t) {
+      const auto c = world_triangle(scene.mesh_of(id), scene.objects[id].transform, t);
+      const glm::dvec3 normal = glm::cross(c[1] - c[0], c[2] - c[0]);
+      const double slope = glm::dot(normal, direction);
+      if (slope == 0.0) continue;
+      const double distance = glm::dot(normal, c[0] - eye) / slope;
+      if (distance <= 0.0 || distance >= hit.distance) continue;
+      const glm::dvec3 p = eye + direction * distance;
+      bool inside = true;
+      for (std::size_t i = 0; i < 3; ++i) {
+        inside &= glm::dot(normal, glm::cross(c[(i + 1) % 3] - c[i], p - c[i])) >= 0.0;
+      }
+      if (inside) hit = {id, distance};
+    }
+  }
+  return hit;
+}
+
+/// Of rays from places to what they hit: the last open leaf before it lists the object, and no
+/// solid leaf lies between.
+void expect_listed_hits(const Scene& scene, std::size_t place_step) {
+  const QuakeWorld& world = *scene.quake;
+  Random random(3);
+  int hits = 0;
+  for (std::size_t i = 0; i < world.places.size(); i += place_step) {
+    for (int k = 0; k < 4; ++k) {
+      const glm::dvec3& eye = world.places[i].eye;
+      const glm::dvec3 direction = random_direction(random);
+      const Hit hit = first_hit(scene, eye, direction);
+      ASSERT_NE(hit.object, none_id) << "place " << i;
+      const auto leaf_before = [&](double back_m) {
+        return world.leaf_at(eye + direction * std::max(hit.distance - back_m, 0.0));
+      };
+      // Corners are rounded to an eighth of a unit, so a face may lie that deep in solid matter.
+      std::uint32_t leaf = leaf_before(0.0);
+      for (double back_m = 1e-3; world.leaves[leaf].cluster < 0 && back_m < 0.1; back_m *= 2.0) {
+        leaf = leaf_before(back_m);
+      }
+      for (double way_m = 0.0; way_m < hit.distance - 0.1; way_m += 0.05) {
+        EXPECT_GE(world.leaves[world.leaf_at(eye + direction * way_m)].cluster, 0);
+      }
+      if (world.leaf_of_object[hit.object] == none_id) continue;
+      EXPECT_TRUE(std::ranges::binary_search(world.leaves_of_object(hit.object), leaf))
+          << "place " << i << " object " << hit.object << " leaf " << leaf;
+      ++hits;
+    }
+  }
+  EXPECT_GT(hits, 30);
+}
+
+/// Every eye is in an open leaf, and so are the corners of its near plane's window.
+void expect_walk_in_the_open(const Scene& scene, const Path& path, double least_m) {
+  const QuakeWorld& world = *scene.quake;
+  const auto is_open = [&](const glm::dvec3& point) {
+    return world.leaves[world.leaf_at(point)].cluster >= 0;
+  };
+  double length = 0.0;
+  for (std::size_t i = 0; i < path.frames.size(); ++i) {
+    const auto& [pose, lens] = path.frames[i].camera;
+    EXPECT_TRUE(is_open(pose.eye)) << i;
+    for (const double x : {lens.left, lens.right}) {
+      for (const double y : {lens.bottom, lens.top}) {
+        EXPECT_TRUE(is_open(pose.eye - pose.back * lens.near_m + pose.right * x + pose.up * y));
+      }
+    }
+    if (i > 0) length += glm::distance(pose.eye, path.frames[i - 1].camera.pose.eye);
+  }
+  EXPECT_GT(length, least_m);
+}
+
+TEST_F(OpenArena, ListsTheLeavesOfWhatRaysHit) { expect_listed_hits(*scene_, 3); }
+
+TEST_F(OpenArena, HasACellForEachOpenLeafAndNothingOddButTinyPortals) {
+  EXPECT_EQ(scene_->cells.size(), 1041U);
+  EXPECT_EQ(scene_->portals.size(), 2U * 2343U);
+  EXPECT_EQ(world().doubt_about_sets(), "");
+  EXPECT_EQ(world().report.leaves_open_to_outside, 2U);
+}
+
+TEST_F(OpenArena, IsWalkedThroughOnFoot) {
+  expect_walk_in_the_open(
+      *scene_, load_path("oa_dm2_walk", *scene_, {512, 512}, 0, repository_data()), 150.0);
+}
+
+TEST(Czest3ctf, HasTheKnownCountsAndIsWalkedThroughOnFoot) {
+  const Scene scene = load("czest3ctf");
+  EXPECT_EQ(scene.triangle_count(), 22'257U);
+  EXPECT_EQ(scene.object_count(), 578U);
+  EXPECT_EQ(scene.quake->cluster_count, 1441U);
+  EXPECT_EQ(scene.cells.size(), 1441U);
+  EXPECT_EQ(scene.portals.size(), 2U * 3430U);
+  EXPECT_EQ(scene.quake->doubt_about_sets(), "");
+  expect_listed_hits(scene, 20);
+  expect_walk_in_the_open(
+      scene, load_path("czest3ctf_walk", scene, {512, 512}, 0, repository_data()), 400.0);
 }
 
 TEST(Apartment, IsUprightAndSolidInParts) {
