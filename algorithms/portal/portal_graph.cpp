@@ -4,7 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "common/scene/error.h"
+#include "algorithms/portal/window_cover.h"
+#include "common/geometry/frustum.h"
 
 namespace vislab::portal_culling {
 namespace {
@@ -46,9 +47,6 @@ Aabb grown(const Aabb& box, float by) { return {box.min - glm::vec3(by), box.max
 }  // namespace
 
 void PortalGraph::build(const Scene& scene) {
-  if (scene.cells.empty()) {
-    throw InputError(scene.name + " has no cells, so portals tell nothing about it");
-  }
   add_openings(scene);
   add_regions(scene);
   add_objects(scene);
@@ -111,6 +109,7 @@ void PortalGraph::for_each_region_near(const Aabb& box, Visit&& visit) const {
   const auto overlap = [](const Aabb& a, const Aabb& b) {
     return glm::all(glm::lessThanEqual(a.min, b.max)) && glm::all(glm::lessThanEqual(b.min, a.max));
   };
+  if (regions_.empty()) return;
   std::array<std::uint32_t, 128> stack;
   std::size_t size = 0;
   stack[size++] = Bvh::root;
@@ -127,35 +126,52 @@ bool PortalGraph::start_cells(const Camera& camera, std::vector<CellId>& cells) 
   cells.clear();
   const Lens& lens = camera.lens;
   const glm::dvec3 middle = camera.pose.eye - camera.pose.back * lens.near_m;
-  const auto corner = [&](double x, double y) {
-    return middle + camera.pose.right * x + camera.pose.up * y;
-  };
-  const ConvexPolygon window{corner(lens.left, lens.bottom), corner(lens.right, lens.bottom),
-                             corner(lens.right, lens.top), corner(lens.left, lens.top)};
+  WindowPiece window{{{{lens.left, lens.bottom},
+                       {lens.right, lens.bottom},
+                       {lens.right, lens.top},
+                       {lens.left, lens.top}}},
+                     4};
   Aabb box;
-  for (const glm::dvec3& p : window) box.extend(glm::vec3(p));
-  double covered = 0.0;
+  for (const glm::dvec2& p : window.span()) {
+    box.extend(glm::vec3(middle + camera.pose.right * p.x + camera.pose.up * p.y));
+  }
+  WindowCover cover(window);
   for_each_region_near(grown(box, 1e-4F), [&](std::uint32_t id) {
-    ConvexPolygon inside = window;
-    for (const Plane& plane : regions_[id].planes) {
-      Plane moved = plane;
-      moved.d += region_slack_m;
-      inside = divided(inside, moved, 0.0).inside;
-      if (inside.empty()) return;
+    WindowPiece reached = window;
+    std::array<WindowLine, WindowPiece::capacity> lines;
+    const std::vector<Plane>& planes = regions_[id].planes;
+    const bool knows_all = planes.size() <= lines.size();
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      const Plane& plane = planes[i];
+      const WindowLine line{glm::dot(plane.normal, camera.pose.right),
+                            glm::dot(plane.normal, camera.pose.up), plane.signed_distance(middle)};
+      if (knows_all) lines[i] = line;
+      if (!reached.cut(line.moved(region_slack_m))) return;
     }
-    covered += area(inside);
+    if (knows_all) cover.take_away({lines.data(), planes.size()});
     const CellId cell = cell_of_region_[id];
     if (std::ranges::find(cells, cell) == cells.end()) cells.push_back(cell);
   });
-  return covered >= area(window) * (1.0 - 1e-6);
+  return cover.complete();
+}
+
+void PortalGraph::cells_of(const Aabb& box, std::vector<CellId>& cells) const {
+  cells.clear();
+  for_each_region_near(box, [&](std::uint32_t id) {
+    for (Plane plane : regions_[id].planes) {
+      plane.d += region_slack_m;
+      if (surely_outside(plane, box)) return;
+    }
+    const CellId cell = cell_of_region_[id];
+    if (std::ranges::find(cells, cell) == cells.end()) cells.push_back(cell);
+  });
 }
 
 std::size_t PortalGraph::bytes() const {
-  std::size_t total = openings_.capacity() * sizeof(Opening) +
-                      first_opening_.capacity() * sizeof(std::uint32_t) +
-                      corners_.capacity() * sizeof(glm::dvec3) + region_tree_.bytes() +
-                      cell_of_region_.capacity() * sizeof(CellId) +
-                      free_.capacity() * sizeof(ObjectId);
+  std::size_t total =
+      openings_.capacity() * sizeof(Opening) + first_opening_.capacity() * sizeof(std::uint32_t) +
+      corners_.capacity() * sizeof(glm::dvec3) + region_tree_.bytes() +
+      cell_of_region_.capacity() * sizeof(CellId) + free_.capacity() * sizeof(ObjectId);
   for (const ConvexRegion& region : regions_) {
     total += sizeof(region) + region.planes.capacity() * sizeof(Plane);
   }

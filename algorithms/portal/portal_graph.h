@@ -3,6 +3,10 @@
 //
 // Portals are made a little larger in their planes (portal_slack_m), since their corners are
 // rounded: what is seen past a rounded edge is seen through the portal.
+//
+// Guarantee of the start cells: a ray that begins anywhere in the near plane's window begins in one
+//   of them. Whether cells cover the window is found by taking away from it what lies in each cell,
+//   so that cells that overlap do not make up for a gap.
 #pragma once
 
 #include <cstdint>
@@ -25,13 +29,10 @@ struct Opening {
 
 class PortalGraph {
  public:
-  /// Throws InputError if the scene has no cell.
+  /// A scene without cells gives a graph that no camera is in.
   void build(const Scene& scene);
-  /// Objects that moved are put into the cells that their boxes reach into. The first call after
-  /// reset() brings them all home.
-  void update(const Frame& frame, const Changes& changes);
 
-  std::size_t cell_count() const { return first_opening_.size() - 1; }
+  std::size_t cell_count() const { return objects_of_.size(); }
   std::size_t opening_count() const { return openings_.size(); }
   const Opening& opening(std::uint32_t id) const { return openings_[id]; }
   /// Ids of the openings that lead out of the cell are `first` … `end` - 1.
@@ -41,13 +42,17 @@ class PortalGraph {
     return {corners_.data() + opening.first_corner, opening.corner_count};
   }
 
+  /// Where the scene puts them; ascending.
   std::span<const ObjectId> objects_of(CellId cell) const { return objects_of_[cell]; }
-  /// Objects that lie in no cell, or not only in cells: no portal tells anything about them.
+  /// Objects that the scene puts into no cell: no portal tells anything about them. Ascending.
   std::span<const ObjectId> free_objects() const { return free_; }
 
   /// The cells in which the image's rays begin: those that the near plane's window reaches into.
-  /// False if a part of it lies in no cell: then portals tell nothing.
+  /// False if a part of it lies in no cell: then portals tell nothing. Allocates nothing but room
+  /// in `cells`.
   bool start_cells(const Camera& camera, std::vector<CellId>& cells) const;
+  /// The cells that a box reaches into, each once.
+  void cells_of(const Aabb& box, std::vector<CellId>& cells) const;
 
   std::size_t bytes() const;
 

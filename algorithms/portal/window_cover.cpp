@@ -1,0 +1,78 @@
+#include "algorithms/portal/window_cover.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace vislab::portal_culling {
+namespace {
+
+/// Regions written by hand touch within the rounding of float.
+constexpr double cover_slack_m = 1e-6;
+
+}  // namespace
+
+double WindowPiece::area() const {
+  double twice = 0.0;
+  for (std::uint32_t i = 2; i < count; ++i) {
+    const glm::dvec2 a = corners[i - 1] - corners[0];
+    const glm::dvec2 b = corners[i] - corners[0];
+    twice += a.x * b.y - a.y * b.x;
+  }
+  return 0.5 * std::abs(twice);
+}
+
+bool WindowPiece::cut(const WindowLine& line, WindowPiece* outside) {
+  if (outside != nullptr) outside->count = 0;
+  if (count + 1 >= capacity) {
+    if (outside == nullptr) return true;
+    std::swap(*this, *outside);
+    return false;
+  }
+  WindowPiece inside;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const glm::dvec2& here = corners[i];
+    const glm::dvec2& next = corners[i + 1 == count ? 0 : i + 1];
+    const double at_here = line.distance(here);
+    const double at_next = line.distance(next);
+    if (at_here >= 0.0) inside.corners[inside.count++] = here;
+    if (outside != nullptr && at_here < 0.0) outside->corners[outside->count++] = here;
+    if ((at_here < 0.0) == (at_next < 0.0)) continue;
+    const glm::dvec2 between = here + (next - here) * (at_here / (at_here - at_next));
+    inside.corners[inside.count++] = between;
+    if (outside != nullptr) outside->corners[outside->count++] = between;
+  }
+  count = inside.count;
+  std::copy_n(inside.corners.begin(), count, corners.begin());
+  return count > 0;
+}
+
+WindowCover::WindowCover(const WindowPiece& window) : negligible_(1e-9 * window.area()) {
+  pieces_[0] = window;
+}
+
+void WindowCover::take_away(std::span<const WindowLine> lines) {
+  std::array<WindowPiece, most_pieces> left;
+  std::uint32_t left_count = 0;
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    WindowPiece& piece = pieces_[i];
+    for (const WindowLine& line : lines) {
+      WindowPiece outside;
+      const bool any = piece.cut(line.moved(cover_slack_m), &outside);
+      if (outside.count >= 3 && outside.area() > negligible_) {
+        if (left_count == most_pieces) {
+          too_many_ = true;
+          return;
+        }
+        left[left_count++] = outside;
+      }
+      if (!any) break;
+    }
+  }
+  std::copy_n(left.begin(), left_count, pieces_.begin());
+  count_ = left_count;
+}
+
+bool WindowCover::complete() const { return count_ == 0 && !too_many_; }
+
+}  // namespace vislab::portal_culling
