@@ -1,0 +1,251 @@
+// Potentially visible sets: the geometry of sequences of portals, sets held against rays from all
+// over a cell, and the sets of a Quake III world.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+
+#include "algorithms/portal/pvs_flow.h"
+#include "algorithms/portal/pvs_polygon.h"
+#include "common/geometry/random.h"
+#include "common/judge/region_truth.h"
+#include "common/scene/error.h"
+#include "common/scene/quake_world.h"
+#include "tests/algorithms/portal_rooms.h"
+#include "tests/algorithms/run_culler.h"
+
+namespace vislab {
+namespace {
+
+using namespace portal_culling;
+
+/// An upright square across the x axis, counter-clockwise seen from smaller x.
+std::vector<glm::dvec3> square(double x, double z, double half) {
+  return {{x, -half, z - half}, {x, -half, z + half}, {x, half, z + half}, {x, half, z - half}};
+}
+
+/// Rooms of 4 m along the x axis; the wall after room k has a square hole of 1 m about z = at[k].
+Scene rooms_with_holes_at(const std::vector<double>& at) {
+  Scene scene;
+  scene.name = "staggered";
+  scene.meshes.push_back(cube_mesh());
+  scene.cells.resize(at.size() + 1);
+  for (CellId room = 0; room <= at.size(); ++room) {
+    scene.objects.push_back(
+        {0, box_transform({4.0 * room + 2.0, -3.0, 0.0}, glm::dvec3(0.2)), room});
+    scene.cells[room].regions = {
+        rooms_of_tests::box_region({4.0 * room, -4, -9}, {4.0 * room + 4.0, 4, 9})};
+    scene.cells[room].bounds = scene.cells[room].regions[0].bounds;
+    scene.cells[room].objects = {room};
+    if (room == at.size()) break;
+    std::vector<glm::dvec3> hole = square(4.0 * room + 4.0, at[room], 0.5);
+    scene.portals.push_back(make_portal(hole, room, room + 1));
+    std::ranges::reverse(hole);
+    scene.portals.push_back(make_portal(hole, room + 1, room));
+  }
+  scene.finish();
+  return scene;
+}
+
+std::vector<std::vector<CellId>> sets_of(const Scene& scene, const PvsLimits& limits,
+                                         std::uint64_t* given_up = nullptr) {
+  PortalGraph graph;
+  graph.build(scene);
+  const PvsTable table = find_visible_cells(graph, limits);
+  if (given_up != nullptr) *given_up = table.given_up;
+  std::vector<std::vector<CellId>> sets(scene.cells.size());
+  for (CellId cell = 0; cell < sets.size(); ++cell) {
+    BitWords words(words_for(sets.size()), 0);
+    table.cells.unite(cell, words);
+    for (CellId other = 0; other < sets.size(); ++other) {
+      if (bit(words, other)) sets[cell].push_back(other);
+    }
+  }
+  return sets;
+}
+
+using Set = std::vector<CellId>;
+
+TEST(PvsRows, ComeBackAsTheyWentIn) {
+  for (const std::size_t bits : {1U, 64U, 65U, 5000U}) {
+    CompressedRows rows;
+    rows.clear(bits);
+    Random random(bits);
+    std::vector<BitWords> given;
+    for (const double share : {0.0, 0.001, 0.5, 1.0}) {
+      given.emplace_back(words_for(bits), 0);
+      for (std::size_t i = 0; i < bits; ++i) {
+        if (random.uniform() < share) set_bit(given.back(), i);
+      }
+      rows.add(given.back());
+    }
+    for (std::size_t row = 0; row < given.size(); ++row) {
+      BitWords back(words_for(bits), 0);
+      rows.unite(row, back);
+      EXPECT_EQ(back, given[row]);
+    }
+  }
+}
+
+TEST(PvsPolygon, SeparatorsLeaveWhatLinesThroughBothPolygonsReach) {
+  const FlowPolygon first(square(0.0, 0.0, 0.5));
+  const FlowPolygon second(square(1.0, 0.0, 0.5));
+  FlowPolygon target(square(2.0, 0.0, 9.0));
+  std::vector<HalfSpace> separators;
+  append_separators(first, second, 0.0, separators);
+  for (const HalfSpace& half : separators) ASSERT_TRUE(target.clip(half));
+  double reach = 0.0;
+  for (const glm::dvec3& corner : target.corners()) {
+    reach = std::max({reach, std::abs(corner.y), std::abs(corner.z)});
+  }
+  EXPECT_NEAR(reach, 1.5, 1e-9);
+}
+
+TEST(PvsFlow, ThirdHoleIsSeenOnlyIfALineGoesThroughAllThree) {
+  // Lines through [-0.5, 0.5] at x = 4 and [1, 2] at x = 8 are at 1.5 m or more at x = 12.
+  EXPECT_EQ(sets_of(rooms_with_holes_at({0.0, 1.5, 2.1}), {})[0], (Set{0, 1, 2, 3}));
+  EXPECT_EQ(sets_of(rooms_with_holes_at({0.0, 1.5, 1.01}), {})[0], (Set{0, 1, 2, 3}));
+  const auto hidden = sets_of(rooms_with_holes_at({0.0, 1.5, 0.99}), {});
+  EXPECT_EQ(hidden[0], (Set{0, 1, 2}));
+  EXPECT_EQ(hidden[3], (Set{1, 2, 3})) << "sight is mutual";
+}
+
+TEST(PvsFlow, SetsAreSymmetricAndDoNotDependOnThreads) {
+  const Scene ring = [] {
+    Scene scene = make_room_ring({30, 0, 1});
+    scene.finish();
+    return scene;
+  }();
+  const auto sets = sets_of(ring, {.threads = 1});
+  EXPECT_EQ(sets, sets_of(ring, {.threads = 2}));
+  for (CellId cell = 0; cell < sets.size(); ++cell) {
+    EXPECT_LT(sets[cell].size(), 30U) << "the ring turns";
+    for (const CellId other : sets[cell]) {
+      EXPECT_TRUE(std::ranges::binary_search(sets[other], cell)) << cell << " " << other;
+    }
+  }
+}
+
+TEST(PvsFlow, ASourceThatIsGivenUpSeesAllThatTheSidesOfThePortalsAllow) {
+  const Scene scene = rooms_with_holes_at({0.0, 1.5, 0.0, 1.5});
+  std::uint64_t given_up = 0;
+  const auto all = sets_of(scene, {.most_passes = 0}, &given_up);
+  EXPECT_GT(given_up, 0U);
+  EXPECT_EQ(all[0], (Set{0, 1, 2, 3, 4}));
+  EXPECT_EQ(sets_of(scene, {}, &given_up)[0], (Set{0, 1, 2}));
+  EXPECT_EQ(given_up, 0U);
+}
+
+/// Rays from all over the cells, against the sets that the culler gives them.
+RegionVerdict judged(CullerRun& run, const Scene& scene, std::uint32_t rays) {
+  RegionJudge judge(scene, {12, rays, 3, 2});
+  const std::vector<CellTruth> truth = judge.trace(reachable_cells(scene));
+  return judge.judge(truth, [&](CellId cell) {
+    const auto set = region_set(run.culler(), cell, scene);
+    EXPECT_TRUE(set);
+    return set.value_or(std::vector<ObjectId>());
+  });
+}
+
+TEST(Pvs, MissesNoRayThroughRolledHolesInRowsOfUpToEight) {
+  for (const RoomLine& line : {RoomLine{6, 1, 0.0}, RoomLine{6, 1, 30.0}, RoomLine{4, 8, 45.0},
+                               RoomLine{5, 3, 10.0, 0.3}}) {
+    const Scene scene = make_room_line(line);
+    CullerRun run("portal.pvs", scene);
+    const RegionVerdict verdict = judged(run, scene, 500);
+    EXPECT_EQ(verdict.misses, 0U) << line.rooms << " " << line.holes << " " << line.roll_deg;
+    EXPECT_EQ(verdict.cells, line.rooms);
+  }
+}
+
+TEST(Pvs, AHoleThatIsNoPortalIsFoundByRays) {
+  Scene scene = make_room_line({.rooms = 4});
+  std::erase_if(scene.portals, [](const Portal& portal) { return portal.from + portal.to == 3; });
+  CullerRun run("portal.pvs", scene);
+  EXPECT_GT(judged(run, scene, 300).misses, 0U);
+}
+
+TEST(Pvs, KeepsWhatAWalkThroughThePortalsKeeps) {
+  const Scene scene = make_room_line({.rooms = 6, .holes = 2, .roll_deg = 20.0});
+  CullerRun pvs("portal.pvs", scene);
+  CullerRun walk("portal.polygon", scene);
+  Random random(5);
+  std::size_t fewer = 0;
+  for (int i = 0; i < 60; ++i) {
+    const glm::dvec3 eye{random.uniform(0.3, 23.7), random.uniform(0.3, 2.7),
+                         random.uniform(-3.7, 3.7)};
+    const Camera camera =
+        camera_at(eye, {random.uniform(0.0, 24.0), 1.5, random.uniform(-4.0, 4.0)});
+    std::vector<ObjectId> kept = pvs.objects(camera);
+    std::vector<ObjectId> walked = walk.objects(camera);
+    std::ranges::sort(kept);
+    std::ranges::sort(walked);
+    EXPECT_TRUE(std::ranges::includes(kept, walked)) << i;
+    fewer += kept.size() < scene.object_count() ? 1 : 0;
+  }
+  EXPECT_GT(fewer, 30U);
+}
+
+TEST(Pvs, WhereNoSetTellsAnythingTheFrustumDecides) {
+  const Scene scene = rooms_with_holes_at({0.0, 6.0, -6.0});
+  CullerRun run("portal.pvs", scene);
+  const Camera first_room = camera_at({1.0, -3.0, 0.0}, {9.0, -3.0, 0.0});
+  EXPECT_EQ(run.objects(first_room), (std::vector<ObjectId>{0, 1, 2}));
+  const Camera outside = camera_at({-5.0, -3.0, 0.0}, {9.0, -3.0, 0.0});
+  EXPECT_EQ(run.objects(outside), (std::vector<ObjectId>{0, 1, 2, 3}));
+  EXPECT_EQ(run.counter("frames_outside"), 1U);
+  run.update(first_room, {{3}, {box_transform({6.0, -3.0, 0.0}, glm::dvec3(0.2))}, {}, {}});
+  EXPECT_EQ(run.objects(first_room), (std::vector<ObjectId>{0, 1, 2, 3})) << "it has moved";
+  run.reset();
+  EXPECT_EQ(run.objects(first_room), (std::vector<ObjectId>{0, 1, 2}));
+}
+
+/// Three rooms along x, 4 m each, as leaves 1 to 3 of a tree; leaf 0 is solid.
+Scene small_world(std::vector<std::uint8_t> visible) {
+  Scene scene = rooms_with_holes_at({0.0, 0.0});
+  auto world = std::make_shared<QuakeWorld>();
+  world->planes = {{{1, 0, 0}, 0.0}, {{1, 0, 0}, -4.0}, {{1, 0, 0}, -8.0}};
+  world->nodes = {{0, 1, -1}, {1, 2, -2}, {2, -4, -3}};
+  world->leaves.resize(4);
+  for (std::int32_t leaf = 1; leaf < 4; ++leaf) {
+    world->leaves[static_cast<std::size_t>(leaf)].cluster = leaf - 1;
+  }
+  world->cell_of_leaf = {none_id, 0, 1, 2};
+  world->leaf_lists = {1, 2, 3};
+  world->first_leaf = {0, 1, 2, 3};
+  world->cluster_count = 3;
+  world->bytes_per_cluster = 1;
+  world->visible = std::move(visible);
+  scene.quake = world;
+  return scene;
+}
+
+TEST(MapPvs, KeepsTheClustersThatTheWorldSaysAreSeen) {
+  const Scene scene = small_world({0b011, 0b111, 0b110});
+  CullerRun run("portal.map_pvs", scene);
+  const Camera first_room = camera_at({1.0, -3.0, 0.0}, {9.0, -3.0, 0.0});
+  EXPECT_EQ(run.objects(first_room), (std::vector<ObjectId>{0, 1}));
+  EXPECT_EQ(run.objects(camera_at({4.5, -3.0, 0.0}, {9.0, -3.0, 0.0})),
+            (std::vector<ObjectId>{1, 2}))
+      << "the first room lies behind";
+  const Camera in_the_wall = camera_at({-0.05, -3.0, 0.0}, {9.0, -3.0, 0.0});
+  EXPECT_EQ(run.objects(in_the_wall), (std::vector<ObjectId>{0, 1, 2}));
+  EXPECT_EQ(region_set(run.culler(), 0, scene), (std::vector<ObjectId>{0, 1}));
+  EXPECT_EQ(region_set(run.culler(), 2, scene), (std::vector<ObjectId>{1, 2}));
+}
+
+TEST(MapPvs, RefusesAWorldWithoutVisibilityData) {
+  const Scene scene = small_world({});
+  EXPECT_THROW(CullerRun("portal.map_pvs", scene), InputError);
+}
+
+TEST(MapPvs, InScenesThatAreNoQuakeWorldTheFrustumDecides) {
+  const Scene scene = rooms_with_holes_at({0.0, 6.0, -6.0});
+  CullerRun run("portal.map_pvs", scene);
+  EXPECT_EQ(run.objects(camera_at({1.0, -3.0, 0.0}, {9.0, -3.0, 0.0})),
+            (std::vector<ObjectId>{0, 1, 2, 3}));
+  EXPECT_FALSE(region_set(run.culler(), 0, scene));
+}
+
+}  // namespace
+}  // namespace vislab
