@@ -23,7 +23,7 @@
 
 namespace vislab::portal_culling {
 
-inline constexpr std::uint32_t visits_per_cell = 64;
+inline constexpr std::uint32_t visits_per_cell = 512;
 
 struct WalkLimits {
   std::uint32_t visits = visits_per_cell;

@@ -160,7 +160,7 @@ TEST(PortalWalk, EightPortalsBetweenTwoRoomsDoNotMultiplyFromRoomToRoom) {
   const Camera camera = looking(eye, eye + glm::dvec3(1.0, 0.02, 0.01));
   lab.check(camera);
   const std::uint64_t visits = lab.polygon().counter("cells_visited");
-  EXPECT_LE(visits, 9U * 65U);
+  EXPECT_LE(visits, 9U * 513U);
   EXPECT_GT(visits, 20U);
 }
 
