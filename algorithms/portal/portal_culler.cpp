@@ -25,6 +25,7 @@ void PortalCuller::build(const Scene& scene, const BuildContext&) {
   places_.build(scene, graph_);
   offered_.resize(scene.object_count());
   marks_.assign(scene.object_count(), {});
+  reached_.assign(graph_.cell_count(), 0);
   cull_ = 0;
   kept_.reserve(scene.object_count());
   sorted_.resize(scene.object_count());
@@ -34,17 +35,18 @@ void PortalCuller::build(const Scene& scene, const BuildContext&) {
 void PortalCuller::start_marks() {
   if (++cull_ != 0) return;
   marks_.assign(marks_.size(), {});
+  reached_.assign(reached_.size(), 0);
   cull_ = 1;
 }
 
 void PortalCuller::cull(const Frame& frame, const Candidates& candidates, DrawSink& out) {
   frustum_ = frustum_of(frame.camera);
+  start_marks();
   kept_.clear();
   if (!find_start(frame.camera, start_cells_)) {
     ++outside_;
     keep_in_frustum(frame, candidates);
   } else {
-    start_marks();
     everything_ = candidates.form() == Candidates::Form::everything;
     if (!everything_) {
       offered_.clear();
@@ -86,13 +88,21 @@ void PortalCuller::sort_kept() {
 
 std::size_t PortalCuller::bytes() const {
   return graph_.bytes() + places_.bytes() + offered_.bytes() + marks_.capacity() * sizeof(Mark) +
-         kept_.capacity() * sizeof(Kept) + sorted_.capacity() * sizeof(ObjectId) +
+         reached_.capacity() * sizeof(std::uint32_t) + kept_.capacity() * sizeof(Kept) +
+         sorted_.capacity() * sizeof(ObjectId) +
          place_of_depth_.capacity() * sizeof(std::uint32_t) +
          start_cells_.capacity() * sizeof(CellId);
 }
 
 Counters PortalCuller::counters() const {
-  return {{"objects_tested", objects_tested_}, {"outside", outside_}};
+  return {{"objects_tested", objects_tested_}, {"frames_outside", outside_}};
+}
+
+bool PortalCuller::append_reached_cells(std::vector<CellId>& cells) const {
+  for (CellId cell = 0; cell < reached_.size(); ++cell) {
+    if (cull_ != 0 && reached_[cell] == cull_) cells.push_back(cell);
+  }
+  return !reached_.empty();
 }
 
 }  // namespace vislab::portal_culling

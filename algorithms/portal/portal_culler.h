@@ -13,6 +13,7 @@
 
 #include "algorithms/portal/object_places.h"
 #include "algorithms/portal/portal_walk.h"
+#include "common/culler/cell_walker.h"
 #include "common/culler/culler.h"
 #include "common/culler/stamps.h"
 #include "common/geometry/frustum.h"
@@ -22,7 +23,7 @@ namespace vislab::portal_culling {
 /// The parts of the declaration that they have in common.
 CullerInfo portal_culler_info(std::string name);
 
-class PortalCuller : public ICuller {
+class PortalCuller : public ICuller, public CellWalker {
  public:
   explicit PortalCuller(CullerInfo info) : info_(std::move(info)) {}
 
@@ -35,6 +36,7 @@ class PortalCuller : public ICuller {
   void cull(const Frame& frame, const Candidates& candidates, DrawSink& out) override;
   std::size_t bytes() const override;
   Counters counters() const override;
+  bool append_reached_cells(std::vector<CellId>& cells) const override;
 
  protected:
   /// Visits the cells that are seen from the start cells, with visit_cell().
@@ -50,6 +52,7 @@ class PortalCuller : public ICuller {
   /// reach into what is left of the view; it is asked no more of those that are kept.
   template <typename Meets>
   void visit_cell(CellId cell, std::uint32_t depth, const Frame& frame, Meets&& meets) {
+    reached_[cell] = cull_;
     places_.for_each_in(cell, [&](ObjectId object) {
       Mark& mark = mark_of(object, frame);
       if (mark.state == State::left_out) return;
@@ -106,9 +109,10 @@ class PortalCuller : public ICuller {
   Frustum frustum_;
   std::vector<CellId> start_cells_;
   std::uint32_t cull_ = 0;
-  bool everything_ = true;   // is offered
-  ObjectStamps offered_;     // otherwise
-  std::vector<Mark> marks_;  // by object
+  bool everything_ = true;              // is offered
+  ObjectStamps offered_;                // otherwise
+  std::vector<Mark> marks_;             // by object
+  std::vector<std::uint32_t> reached_;  // by cell: the last cull that came to it
   std::vector<Kept> kept_;
   std::vector<std::uint32_t> place_of_depth_;
   std::vector<ObjectId> sorted_;

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "common/culler/cell_walker.h"
+
 namespace vislab {
 namespace {
 
@@ -203,7 +205,7 @@ class Link : public DrawSink {
   RangeRestorer restorer_;
 };
 
-class Chain : public ICuller {
+class Chain : public ICuller, public CellWalker {
  public:
   explicit Chain(std::vector<std::unique_ptr<ICuller>> stages) : stages_(std::move(stages)) {
     if (stages_.size() < 2) throw std::logic_error("a chain has at least two stages");
@@ -255,6 +257,14 @@ class Chain : public ICuller {
       }
     }
     return all;
+  }
+
+  /// Of the first stage that knows.
+  bool append_reached_cells(std::vector<CellId>& cells) const override {
+    return std::ranges::any_of(stages_, [&](const std::unique_ptr<ICuller>& stage) {
+      const auto* const walker = dynamic_cast<const CellWalker*>(stage.get());
+      return walker != nullptr && walker->append_reached_cells(cells);
+    });
   }
 
  private:
