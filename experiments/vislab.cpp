@@ -160,6 +160,10 @@ class CommandLine {
             ->needs(culler);
     sub->add_option("--draw", show_.draw, "with --queries: a device, as run takes it")
         ->needs(queries);
+    sub->add_flag("--plan", show_.plan,
+                  "the scene's cells and portals from above, and which the culler reached")
+        ->needs(culler)
+        ->excludes(queries);
     sub->add_option("--depth-complexity", show_.depth_complexity,
                     "a heat map of rays, polygons or transparent, and the figures of all three");
     sub->add_option("--scene", show_.scene)->required();

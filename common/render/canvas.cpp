@@ -152,6 +152,26 @@ void Canvas::line(const glm::dvec2& from, const glm::dvec2& to, const Color& col
   }
 }
 
+void Canvas::polygon(std::span<const glm::dvec2> corners, const std::optional<Color>& fill,
+                     const std::optional<Color>& line, double line_width) {
+  if (corners.size() < 2) return;
+  cairo_t* const cairo = state_->context;
+  cairo_new_path(cairo);
+  for (const glm::dvec2& corner : corners) cairo_line_to(cairo, corner.x, corner.y);
+  cairo_close_path(cairo);
+  if (fill) {
+    state_->color(*fill);
+    cairo_fill_preserve(cairo);
+  }
+  if (line) {
+    state_->color(*line);
+    cairo_set_line_width(cairo, line_width);
+    cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
+    cairo_stroke_preserve(cairo);
+  }
+  cairo_new_path(cairo);
+}
+
 void Canvas::disc(const glm::dvec2& center, double radius, const Color& color) {
   for (const bool rim : {true, false}) {
     state_->color(rim ? rim_color : color);

@@ -1,9 +1,10 @@
 // A picture to write text and lines on. For .cpp files of this folder only.
 #pragma once
 
-#include <string>
-
 #include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <string>
 
 #include "common/render/class_view.h"
 
@@ -25,6 +26,9 @@ class Canvas {
                double line_width);
   /// Lines are drawn on a dark rim, so that they are seen on every ground.
   void line(const glm::dvec2& from, const glm::dvec2& to, const Color& color, double line_width);
+  /// Fills a polygon, or a line around it, or both; two corners are a line. No rims.
+  void polygon(std::span<const glm::dvec2> corners, const std::optional<Color>& fill,
+               const std::optional<Color>& line, double line_width);
   void disc(const glm::dvec2& center, double radius, const Color& color);
   /// Draws a part of an image scaled to the given place; pixels stay squares when they grow.
   void picture(const Image& image, const glm::ivec2& first, const glm::ivec2& size, double left,

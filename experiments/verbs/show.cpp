@@ -6,6 +6,7 @@
 #include "experiments/matrix/resolution.h"
 #include "experiments/run/path_run.h"
 #include "experiments/show/frame_picture.h"
+#include "experiments/show/plan_picture.h"
 #include "experiments/show/surface_pictures.h"
 #include "experiments/verbs/verbs.h"
 
@@ -55,6 +56,14 @@ int show(const Lab& lab, const ShowCall& call) {
   frame.objects = state.view();
   const Granularity granularity = culler->info().granularity;
   const Verdict verdict = judge_set(frame, truth.frame(last), run.sets[last], granularity, caster);
+  const std::string title = scene.name + ", " + lab.cullers.short_name(call.cullers.front()) +
+                            ", frame " + std::to_string(last);
+  if (call.plan) {
+    write_plan_picture(scene, frame, truth.frame(last), run.sets[last], verdict,
+                       reached_cells(*culler, scene, run.sets[last]), title, call.output);
+    std::cerr << "wrote " << call.output.string() << '\n';
+    return 0;
+  }
   if (!run.surfaces[last].empty()) {
     write_surface_picture(scene, frame, truth.frame(last),
                           {{lab.cullers.short_name(call.cullers.front()), run.surfaces[last]}},
@@ -64,9 +73,7 @@ int show(const Lab& lab, const ShowCall& call) {
     std::cerr << "wrote " << call.output.string() << '\n';
     return 0;
   }
-  write_frame_picture(scene, frame, truth.frame(last), run.sets[last], verdict, granularity,
-                      scene.name + ", " + lab.cullers.short_name(call.cullers.front()) +
-                          ", frame " + std::to_string(last),
+  write_frame_picture(scene, frame, truth.frame(last), run.sets[last], verdict, granularity, title,
                       call.output);
   std::cerr << "wrote " << call.output.string() << '\n';
   return 0;

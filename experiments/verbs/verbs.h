@@ -50,6 +50,7 @@ struct ShowCall {
   std::string scene, path;
   std::string resolution = "512x512";
   int frame = 0;
+  bool plan = false;  // of cells and portals, instead of the views from the eye and from outside
   std::filesystem::path output;
   std::string depth_complexity;     // instead of a culler: rays, polygons or transparent
   std::string queries;              // with cullers: strip, boxes or timeline
