@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "common/scene/error.h"
+#include "report/cell_section.h"
 #include "report/chart.h"
 #include "report/method_fields.h"
 #include "report/persistence_section.h"
@@ -30,9 +31,9 @@ constexpr std::chrono::seconds time_limit{60};
 constexpr const char* persistence_file = "persistence.json";
 
 /// The report's parts in their order; each is templates/NAME.md.
-constexpr const char* parts[] = {"front",    "floor",     "depth",    "persistence", "guide",
-                                 "scenes",   "published", "surfaces", "queries",     "sweeps",
-                                 "controls", "methods",   "metrics",  "measurement"};
+constexpr const char* parts[] = {"front",  "floor",     "depth",    "persistence", "guide",
+                                 "scenes", "published", "surfaces", "cells",       "queries",
+                                 "sweeps", "controls",  "methods",  "metrics",     "measurement"};
 
 /// A folder for work in progress, gone with this object.
 class WorkFolder {
@@ -100,6 +101,7 @@ void write_words(const ReportInput& input, const QueryFindings& queries,
       report_fields(input, read_template(folder / "verdict.md"), queries.diagram_blocks(), work);
   add_persistence_fields(persistence, fields);
   add_query_fields(input, queries, work, fields);
+  add_cell_fields(input, work, fields);
   cite_sources(read_template(templates / "bibliography.bib"), fields.lists["methods"]);
   std::string text;
   for (const std::string part : parts) {

@@ -32,6 +32,12 @@ struct ReportInput {
   /// truth's, to `file` (PNG); returns a caption. Empty function: no pictures.
   std::function<std::string(const BlockSummary& block, const std::filesystem::path& file)>
       surface_picture;
+  /// Writes a plan of a scene's cells with what a method that goes from cell to cell reached and
+  /// kept in a telling frame to `file` (PNG); returns the place: scene, path, method and frame.
+  /// Throws InputError if the scene is no longer there or has no cells. Empty function: no plans.
+  std::function<std::string(const BlockSummary& block, const CellSummary& cell,
+                            const std::filesystem::path& file)>
+      plan;
   /// Measures the depth complexity of a block's frame after a third of its path by all definitions,
   /// and writes a heat map by rays to `file` unless that is empty. Empty function: no section on
   /// it.

@@ -11,6 +11,7 @@
 #include "experiments/show/depth_complexity_picture.h"
 #include "experiments/show/frame_picture.h"
 #include "experiments/show/hidden_share.h"
+#include "experiments/show/plan_picture.h"
 #include "experiments/show/query_pictures.h"
 #include "experiments/show/surface_pictures.h"
 #include "experiments/verbs/present_results.h"
@@ -134,6 +135,10 @@ int report(const Lab& lab, const std::filesystem::path& results,
   };
   input.surface_picture = [&](const BlockSummary& block, const std::filesystem::path& file) {
     return write_stored_surfaces(results, scenes, block, file);
+  };
+  input.plan = [&](const BlockSummary& block, const CellSummary& cell,
+                   const std::filesystem::path& file) {
+    return write_stored_plan(results, lab.cullers, scenes, block, cell, file);
   };
   input.hidden_share = [&](const BlockSummary& block) {
     return stored_hidden_share(results, scenes, block);

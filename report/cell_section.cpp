@@ -1,0 +1,92 @@
+#include "report/cell_section.h"
+
+#include <set>
+
+#include "common/scene/error.h"
+#include "report/format.h"
+
+namespace vislab {
+namespace {
+
+/// Counters of methods that know of cells: frames in which the viewer was outside of all of them,
+/// and what walks through portals count.
+constexpr const char* outside = "frames_outside";
+constexpr const char* visited = "cells_visited";
+
+double counter_of(const CellSummary& cell, const std::string& name) {
+  const auto found = cell.counters.find(name);
+  return found == cell.counters.end() ? 0.0 : found->second;
+}
+
+std::string counter_text(const CellSummary& cell, const std::string& name) {
+  return cell.counters.contains(name) ? format_number(counter_of(cell, name)) : "–";
+}
+
+bool was_in_a_cell(const CellSummary& cell) {
+  return cell.counters.contains(outside) && counter_of(cell, outside) < 1.0;
+}
+
+Fields row_of(const BlockSummary& block, const CellSummary& cell) {
+  Fields row;
+  row.values["place"] = markdown_text(block.scene + ", " + block.path);
+  row.values["method"] = markdown_code(cell.culler);
+  row.values["promises"] = markdown_text(to_string(cell.guarantee));
+  row.values["outside"] = format_percent(counter_of(cell, outside));
+  row.values["visited"] = counter_text(cell, visited);
+  row.values["clipped"] = counter_text(cell, "portals_clipped");
+  row.values["tested"] = counter_text(cell, "objects_tested");
+  row.values["triangles"] = format_number(cell.submitted_triangles);
+  row.values["over"] = format_number(cell.over);
+  row.values["false_px"] = format_count(cell.false_px);
+  row.values["cull_us"] =
+      cell.cull_us.measured() ? format_number(cell.cull_us.median.value) : "not timed";
+  row.values["build_ms"] = format_rounded(cell.build_ms);
+  row.values["bytes"] = format_count(cell.bytes);
+  return row;
+}
+
+/// Walks through portals and does it right; with the fewest triangles, the first of equals. Null if
+/// there is none.
+const CellSummary* best_walk(const BlockSummary& block) {
+  const CellSummary* best = nullptr;
+  for (const CellSummary& cell : block.cells) {
+    if (!was_in_a_cell(cell) || counter_of(cell, visited) == 0.0 || !is_free_of_errors(cell) ||
+        cell.granularity != Granularity::object || cell.canonical.find('>') != std::string::npos) {
+      continue;
+    }
+    if (best == nullptr || cell.submitted_triangles < best->submitted_triangles) best = &cell;
+  }
+  return best;
+}
+
+}  // namespace
+
+void add_cell_fields(const ReportInput& input, const std::filesystem::path& folder,
+                     Fields& fields) {
+  auto& rows = fields.lists["cell_rows"];
+  auto& plans = fields.lists["plans"];
+  auto& missing = fields.lists["plans_missing"];
+  std::set<std::string> drawn;  // scenes
+  for (const BlockSummary& block : input.blocks) {
+    for (const CellSummary& cell : block.cells) {
+      if (cell.judged && was_in_a_cell(cell)) rows.push_back(row_of(block, cell));
+    }
+    const CellSummary* const walk = best_walk(block);
+    if (walk == nullptr || !input.plan || !drawn.insert(block.scene_hash).second) continue;
+    const std::string file = "plan-" + std::to_string(plans.size() + 1) + ".png";
+    Fields plan;
+    plan.values["scene"] = markdown_text(block.scene);
+    try {
+      plan.values["place"] = markdown_text(input.plan(block, *walk, folder / file));
+      plan.values["file"] = file;
+      plans.push_back(std::move(plan));
+    } catch (const InputError& error) {
+      // Results outlive the scenes they were measured on; the report is whole without pictures.
+      plan.values["reason"] = markdown_text(error.what());
+      missing.push_back(std::move(plan));
+    }
+  }
+  fields.flag("has_cells", !rows.empty());
+}
+
+}  // namespace vislab
