@@ -370,7 +370,7 @@ class Building {
 
   /// A leaf fills the door and reaches a little into the wall all round.
   void close(const Divider& wall, const BoardOpening& opening) {
-    constexpr double into_wall_m = 0.02;
+    constexpr double into_wall_m = 0.01;  // not as far as to the floor's plane
     add_halves(wall, opening, 0.0);
     const glm::dvec2 right = 0.5 * (opening[1] - opening[0]);
     const glm::dvec2 up = 0.5 * (opening[3] - opening[0]);
