@@ -14,10 +14,13 @@
 // Sources: Airey 1990 (potentially visible sets); Teller and Sequin 1991; Quake's vis (id Software
 //   1996).
 
+#include <algorithm>
+
 #include "algorithms/portal/portal_graph.h"
 #include "algorithms/portal/pvs_culler.h"
 #include "algorithms/portal/pvs_flow.h"
 #include "common/culler/registry.h"
+#include "common/scene/convex_region.h"
 
 namespace vislab {
 namespace {
@@ -67,6 +70,7 @@ class Pvs : public PvsCuller {
     }
     objects.assign(scene.cells.size(), std::move(pairs));
     start_.reserve(scene.cells.size());
+    find_overlaps(scene);
     return objects;
   }
 
@@ -79,17 +83,44 @@ class Pvs : public PvsCuller {
   bool add_seen_from(CellId cell, std::span<std::uint64_t> places) const override {
     if (cell >= table_.cells.row_count()) return false;
     table_.cells.unite(cell, places);
+    for (const auto& [one, other] : overlaps_) {
+      if (one == cell) table_.cells.unite(other, places);
+    }
     return true;
   }
 
   std::size_t bytes_of_sets() const override {
-    return graph_.bytes() + table_.cells.bytes() + start_.capacity() * sizeof(CellId);
+    return graph_.bytes() + table_.cells.bytes() + start_.capacity() * sizeof(CellId) +
+           overlaps_.capacity() * sizeof(overlaps_[0]);
   }
 
  private:
+  /// Whoever stands in two cells sees what both see. (A camera is found in both anyway.)
+  void find_overlaps(const Scene& scene) {
+    overlaps_.clear();
+    for (CellId cell = 0; cell < scene.cells.size(); ++cell) {
+      graph_.cells_of(scene.cells[cell].bounds, start_);
+      for (const CellId other : start_) {
+        if (other != cell && overlap(scene.cells[cell], scene.cells[other])) {
+          overlaps_.emplace_back(cell, other);
+        }
+      }
+    }
+  }
+
+  static bool overlap(const Cell& a, const Cell& b) {
+    constexpr double depth_m = 1e-4;
+    return std::ranges::any_of(a.regions, [&](const ConvexRegion& one) {
+      return std::ranges::any_of(b.regions, [&](const ConvexRegion& other) {
+        return shared_point(one, other, depth_m).has_value();
+      });
+    });
+  }
+
   PortalGraph graph_;
   PvsTable table_;
   std::vector<CellId> start_;
+  std::vector<std::pair<CellId, CellId>> overlaps_;
 };
 
 }  // namespace

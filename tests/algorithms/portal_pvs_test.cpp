@@ -200,6 +200,16 @@ TEST(Pvs, WhereNoSetTellsAnythingTheFrustumDecides) {
   EXPECT_EQ(run.objects(first_room), (std::vector<ObjectId>{0, 1, 2}));
 }
 
+TEST(Pvs, WhoeverStandsInTwoCellsSeesWhatBothSee) {
+  Scene scene = rooms_with_holes_at({0.0, 1.5, 0.99});
+  CullerRun apart("portal.pvs", scene);
+  EXPECT_EQ(region_set(apart.culler(), 0, scene), (std::vector<ObjectId>{0, 1, 2}));
+  scene.cells[0].regions = {rooms_of_tests::box_region({0, -4, -9}, {5, 4, 9})};
+  scene.cells[0].bounds = scene.cells[0].regions[0].bounds;
+  CullerRun overlapping("portal.pvs", scene);
+  EXPECT_EQ(region_set(overlapping.culler(), 0, scene), (std::vector<ObjectId>{0, 1, 2, 3}));
+}
+
 /// Three rooms along x, 4 m each, as leaves 1 to 3 of a tree; leaf 0 is solid.
 Scene small_world(std::vector<std::uint8_t> visible) {
   Scene scene = rooms_with_holes_at({0.0, 0.0});
