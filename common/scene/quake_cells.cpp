@@ -8,6 +8,7 @@
 #include <string>
 
 #include "common/scene/error.h"
+#include "common/scene/quake_gaps.h"
 #include "common/scene/quake_leaves.h"
 
 namespace vislab {
@@ -336,6 +337,8 @@ void add_quake_cells(Scene& scene, QuakeWorld& world, const QuakeCellLimits& lim
     }
   }
   world.report = found.report;
+  world.report.see_through_leaves =
+      count_see_through_leaves(scene, world, shapes_of_leaves(world, bounds));
   world.cell_of_leaf = std::move(found.cell_of_leaf);
   scene.cells = std::move(found.cells);
   scene.portals = std::move(found.portals);

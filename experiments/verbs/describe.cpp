@@ -3,6 +3,7 @@
 
 #include "common/judge/metrics.h"
 #include "common/scene/error.h"
+#include "common/scene/quake_world.h"
 #include "experiments/devices/device_spec.h"
 #include "experiments/matrix/matrix.h"
 #include "experiments/matrix/sweep.h"
@@ -73,6 +74,13 @@ void describe_culler(const Registry& cullers, const std::string& chain, bool jso
   facts.print(std::cout, json);
 }
 
+void add_quake_report(const QuakeReport& report, Facts& facts) {
+  facts.add("leaves_open_to_outside", std::uint64_t{report.leaves_open_to_outside});
+  facts.add("see_through_leaves", std::uint64_t{report.see_through_leaves});
+  facts.add("blind_clusters", std::uint64_t{report.blind_clusters});
+  facts.add("unseen_neighbours", std::uint64_t{report.unseen_neighbours});
+}
+
 void describe_scene(const Lab& lab, const std::string& name, bool json) {
   const LoadedScene loaded = load_scene(name, lab.data);
   const Scene& scene = loaded.scene;
@@ -89,6 +97,7 @@ void describe_scene(const Lab& lab, const std::string& name, bool json) {
   facts.add("self_intersecting_meshes", std::uint64_t{scene.report.self_intersecting_meshes});
   facts.add("zero_area_triangles", std::uint64_t{scene.report.zero_area_triangles});
   facts.add("unused_bad_vertices", std::uint64_t{scene.report.unused_bad_vertices});
+  if (scene.quake) add_quake_report(scene.quake->report, facts);
   const glm::dvec3 size = scene.bounds().half_size() * 2.0;
   facts.add("width_m", size.x);
   facts.add("height_m", size.y);

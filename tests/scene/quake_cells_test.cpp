@@ -7,6 +7,7 @@
 
 #include "common/geometry/random.h"
 #include "common/scene/orientation.h"
+#include "common/scene/quake_gaps.h"
 #include "common/scene/quake_leaves.h"
 #include "tests/scene/test_files.h"
 
@@ -255,6 +256,40 @@ TEST(QuakeCells, AreRefusedWhereTheTreeDoesNotFitItsLeaves) {
   QuakeWorld turned = divided_room({at_x0, at_z1});
   turned.planes[7].normal = -turned.planes[7].normal;
   EXPECT_TRUE(says(input_error([&]() { find_quake_cells(turned, room, {}); }), "BSP tree puts"));
+}
+
+/// A square in the plane at x, 4 metres high and wide.
+Object square_at(Scene& scene, float x) {
+  Mesh mesh;
+  mesh.positions = {{x, -0.5F, -2}, {x, 3.5F, -2}, {x, 3.5F, 2}, {x, -0.5F, 2}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  scene.meshes.push_back(mesh);
+  return {static_cast<MeshId>(scene.meshes.size() - 1), glm::dmat4x3(1.0), none_id};
+}
+
+TEST(QuakeGaps, AreSolidLeavesWithBareFacesOnSeveralSides) {
+  // A solid slab from x = -0.5 to 0.5 parts the room. The room's own walls are bare as well, but
+  // all of what lies behind them is one leaf, which counts always.
+  QuakeWorld world = divided_room({{{1, 0, 0}, -0.5}, {{1, 0, 0}, 0.5}});
+  world.leaves[world.leaf_at({0, 1, 0})].cluster = -1;
+  const std::uint32_t front = world.leaf_at({1, 1, 0});
+  const std::uint32_t back = world.leaf_at({-1, 1, 0});
+  const LeafShapes shapes = shapes_of_leaves(world, room);
+  Scene scene;
+  world.first_leaf = {0};
+  EXPECT_EQ(count_see_through_leaves(scene, world, shapes), 2U);
+  scene.objects.push_back(square_at(scene, 0.5F));
+  world.leaf_lists = {front};
+  world.first_leaf = {0, 1};
+  EXPECT_EQ(count_see_through_leaves(scene, world, shapes), 1U);
+  // Bare on both sides, but for a part.
+  scene.objects[0] = square_at(scene, 0.5F);
+  scene.meshes.back().triangles.pop_back();
+  EXPECT_EQ(count_see_through_leaves(scene, world, shapes), 2U);
+  scene.objects.push_back(square_at(scene, -0.5F));
+  world.leaf_lists = {front, back};
+  world.first_leaf = {0, 1, 2};
+  EXPECT_EQ(count_see_through_leaves(scene, world, shapes), 1U);
 }
 
 }  // namespace

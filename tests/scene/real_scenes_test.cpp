@@ -258,6 +258,8 @@ TEST_F(OpenArena, HasACellForEachOpenLeafAndNothingOddButTinyPortals) {
   EXPECT_EQ(scene_->portals.size(), 2U * 2343U);
   EXPECT_EQ(world().doubt_about_sets(), "");
   EXPECT_EQ(world().report.leaves_open_to_outside, 2U);
+  // High above a hall, behind no drawn face; rays from below go through into the sky.
+  EXPECT_EQ(world().report.see_through_leaves, 1U);
 }
 
 TEST_F(OpenArena, IsWalkedThroughOnFoot) {
