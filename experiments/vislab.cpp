@@ -201,9 +201,15 @@ class CommandLine {
     add_json(sub);
   }
   void add_check() {
-    CLI::App* const sub = verb("check", "contract tests on one culler or chain",
-                               [this] { return check(lab_, name_, json_); });
-    sub->add_option("--culler", name_)->required();
+    CLI::App* const sub =
+        verb("check", "contract tests on one culler or chain, or the cells of a scene", [this] {
+          if (name_.empty() == other_.empty()) {
+            throw InputError("check takes either --culler or --scene");
+          }
+          return name_.empty() ? check_scene(lab_, other_, json_) : check(lab_, name_, json_);
+        });
+    sub->add_option("--culler", name_, "does it keep its contract?");
+    sub->add_option("--scene", other_, "do its cells and portals fit together?");
     add_json(sub);
   }
 

@@ -75,5 +75,7 @@ int report(const Lab& lab, const std::filesystem::path& results,
 /// breaks that never should.
 int atlas(const Lab& lab, const std::filesystem::path& results, bool json);
 int check(const Lab& lab, const std::string& culler, bool json);
+/// Do the cells and portals of a scene fit together, and do surfaces close them? 1 if not.
+int check_scene(const Lab& lab, const std::string& scene, bool json);
 
 }  // namespace vislab

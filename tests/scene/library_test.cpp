@@ -74,7 +74,7 @@ TEST(Library, GeneratedScenesAreTheSameInEveryBuild) {
   EXPECT_EQ(hash("city_tiny"), "3e746c9e647e2f037f52f86bbccccb7c");
   EXPECT_EQ(hash("room_ring"), "f8960ba13870c0e758b670488e0169f1");
   EXPECT_EQ(hash("room_line"), "eab1663a721eb5ee8c6a944fb1602d41");
-  EXPECT_EQ(hash("house"), "5e3b49f084c9dbf1ab8dac5701c7becb");
+  EXPECT_EQ(hash("house"), "6385fcd3a5c9354fb820bef34d6f9b93");
   EXPECT_EQ(hash("asteroid_belt_60"), "4c1b14f745a3069b29bc713fe5571b8b");
   EXPECT_EQ(hash("city100_a"), "eb5efdb15253c9499e931c5ac43bd2aa");
   EXPECT_EQ(hash("bumpy_low"), "e44bce4cf1d460720ee82229b6cf4c8b");

@@ -1,0 +1,88 @@
+// Cells and portals written by hand in a scene's description.
+#include "common/scene/cell_settings.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "common/scene/cell_check.h"
+#include "tests/scene/test_files.h"
+
+namespace vislab {
+namespace {
+
+using test::ScratchFolder;
+
+/// A sheet that reaches through two cells.
+constexpr const char* mesh = "OFF\n3 1 0\n-2 0.5 0\n2 0.5 0\n-2 0.5 1\n3 0 1 2\n";
+constexpr const char* two_cells = R"(
+[mesh]
+file = "mesh.off"
+[[cells]]
+boxes = [[-3, 0, -3], [0, 3, 3], [-3, 3, -3], [-1, 4, 3]]
+[[cells]]
+through = [[0, 0, 0], [3, 0, 0], [0, 0, 0], [0, 3, 0], [0, 0, -3], [0, 0, 3]]
+inward = [[2, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]
+)";
+constexpr const char* portal = R"(
+[[portals]]
+from = 0
+to = 1
+corners = [[0, 0, -1], [0, 0, 1], [0, 2, 1], [0, 2, -1]]
+)";
+
+Scene loaded(const ScratchFolder& folder, const std::string& text) {
+  folder.write("mesh.off", mesh);
+  return load_scene(folder.write("scene.toml", text).string(), test::repository_data()).scene;
+}
+
+TEST(CellSettings, ReadBoxesPlanesAndPortalsBothWays) {
+  const ScratchFolder folder;
+  const Scene scene = loaded(folder, std::string(two_cells) + portal);
+  ASSERT_EQ(scene.cells.size(), 2U);
+  EXPECT_EQ(scene.cells[0].regions.size(), 2U);
+  EXPECT_EQ(scene.cells[0].bounds.max, glm::vec3(0.0F, 4.0F, 3.0F));
+  EXPECT_EQ(scene.cells[1].bounds.min, glm::vec3(0.0F, 0.0F, -3.0F));
+  EXPECT_EQ(scene.cells[1].bounds.max, glm::vec3(3.0F, 3.0F, 3.0F));
+  ASSERT_EQ(scene.portals.size(), 2U);
+  EXPECT_EQ(scene.portals[0].plane.normal, glm::dvec3(-1.0, 0.0, 0.0));
+  EXPECT_EQ(scene.portals[1].plane.normal, glm::dvec3(1.0, 0.0, 0.0));
+  EXPECT_EQ(scene.portals[1].from, 1U);
+  EXPECT_EQ(scene.cells[0].objects, std::vector<ObjectId>{0});
+  EXPECT_EQ(scene.cells[1].objects, std::vector<ObjectId>{0});
+  const CellCheck check = check_cells(scene);
+  EXPECT_EQ(check.overlaps.count + check.gaps.count + check.off.count, 0U);
+}
+
+TEST(CellSettings, RefuseWhatIsNoCellOrNoPortal) {
+  const ScratchFolder folder;
+  const auto refused = [&](const std::string& text) {
+    return test::input_error([&] { loaded(folder, text); });
+  };
+  const std::string head = "[mesh]\nfile = \"mesh.off\"\n";
+  const std::string cells = two_cells;
+  EXPECT_TRUE(test::says(refused(head + portal), "`portals` needs `cells`"));
+  EXPECT_TRUE(test::says(refused(head + "[[cells]]\n"), "either `boxes` or"));
+  EXPECT_TRUE(test::says(refused(head + "[[cells]]\nboxes = [[0, 0, 0]]\n"), "lower and an upper"));
+  EXPECT_TRUE(test::says(refused(head + "[[cells]]\nboxes = [[0, 0, 0], [1, 0, 1]]\n"), "box 0"));
+  EXPECT_TRUE(test::says(refused(head + "[[cells]]\nthrough = [[0, 0, 0]]\ninward = [[1, 0, 0]]\n"),
+                         "no region"));
+  EXPECT_TRUE(test::says(refused(head + "[[cells]]\nthrough = [[0, 0, 0]]\ninward = [[0, 0, 0]]\n"),
+                         "zero"));
+  const auto with_corners = [&](const std::string& corners) {
+    return refused(cells + "[[portals]]\nfrom = 0\nto = 1\ncorners = " + corners + "\n");
+  };
+  EXPECT_TRUE(test::says(with_corners("[[0, 0, 0], [0, 1, 0]]"), "three corners"));
+  EXPECT_TRUE(test::says(with_corners("[[0, 0, 0], [0, 0, 1], [0, 2, 1], [1, 2, 0]]"), "convex"));
+  EXPECT_TRUE(
+      test::says(with_corners("[[0, 0, -1], [0, 0.1, 0], [0, 0, 1], [0, 2, 0]]"), "convex"));
+  EXPECT_TRUE(test::says(refused(cells + "[[portals]]\nfrom = 0\nto = 0\ncorners = [[0, 0, 0]]\n"),
+                         "different"));
+  EXPECT_TRUE(test::says(refused(cells + "[[portals]]\nfrom = 0\nto = 2\ncorners = [[0, 0, 0]]\n"),
+                         "`to`"));
+  EXPECT_TRUE(
+      test::says(refused("[generator]\nkind = \"room_line\"\n[[cells]]\nboxes = []\n"), "`cells`"));
+}
+
+}  // namespace
+}  // namespace vislab
