@@ -141,6 +141,20 @@ TEST(PortalWalk, OutsideEveryCellKeepsWhatIsInTheFrustum) {
   }
 }
 
+TEST(PortalWalk, CellsThatOverlapDoNotMakeUpForAGap) {
+  Scene scene = make_room_line({.rooms = 2});
+  ConvexRegion half = scene.cells[0].regions.front();
+  half.planes.push_back({{0.0, 0.0, 1.0}, 0.0});
+  scene.cells[0].regions = {half, half, half};
+  const glm::dvec3 eye = RoomLine::middle(0) + glm::dvec3(0.0, 0.0, 0.03);
+  const Camera camera = looking(eye, eye + glm::dvec3(1.0, 0.0, 0.0));
+  CullerRun run("portal.polygon", scene);
+  EXPECT_EQ(kept_by(run, camera).size(), count_in_frustum(scene, camera));
+  EXPECT_EQ(run.counter("frames_outside"), 1U);
+  kept_by(run, looking(eye + glm::dvec3(0.0, 0.0, 0.1), eye + glm::dvec3(1.0, 0.0, 0.1)));
+  EXPECT_EQ(run.counter("frames_outside"), 1U);
+}
+
 TEST(PortalWalk, WithoutCellsKeepsWhatIsInTheFrustum) {
   Scene scene;
   scene.meshes = {cube_mesh()};
