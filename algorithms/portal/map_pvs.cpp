@@ -17,6 +17,7 @@
 // Sources: id Software, Quake III Arena (the set's format and use); Teller and Sequin 1991.
 
 #include <algorithm>
+#include <string>
 
 #include "algorithms/portal/pvs_culler.h"
 #include "common/culler/registry.h"
@@ -70,6 +71,11 @@ class MapPvs : public PvsCuller {
       throw InputError(scene.name +
                        " holds no visibility data, so portal.map_pvs has no set to look into; use "
                        "portal.pvs, which computes one");
+    }
+    if (const std::string doubt = world_->doubt_about_sets(); !doubt.empty()) {
+      throw InputError(scene.name + " " + doubt +
+                       ", so portal.map_pvs cannot follow them; use portal.pvs, which computes its "
+                       "own");
     }
     std::vector<std::pair<std::uint32_t, ObjectId>> pairs;
     for (ObjectId object = 0; object < scene.object_count(); ++object) {

@@ -249,6 +249,14 @@ TEST(MapPvs, RefusesAWorldWithoutVisibilityData) {
   EXPECT_THROW(CullerRun("portal.map_pvs", scene), InputError);
 }
 
+TEST(MapPvs, RefusesSetsThatDoNotFitTheirWorld) {
+  Scene scene = small_world({0b011, 0b101, 0b110});
+  auto world = std::make_shared<QuakeWorld>(*scene.quake);
+  world->report.blind_clusters = 1;
+  scene.quake = world;
+  EXPECT_THROW(CullerRun("portal.map_pvs", scene), InputError);
+}
+
 TEST(MapPvs, InScenesThatAreNoQuakeWorldTheFrustumDecides) {
   const Scene scene = rooms_with_holes_at({0.0, 6.0, -6.0});
   CullerRun run("portal.map_pvs", scene);
