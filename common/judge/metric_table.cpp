@@ -30,6 +30,12 @@ std::span<const Metric> metrics() {
       Metric{"over", "ratio", lower, "triangles kept but invisible / truly visible"},
       Metric{"over_objects", "ratio", lower, "objects kept but invisible / truly visible"},
       Metric{"under", "ratio", lower, "triangles visible but left out / truly visible"},
+      Metric{"region_misses", "rays", lower,
+             "rays from sampled viewpoints of a cell that hit an object which is not in the cell's "
+             "set"},
+      Metric{"region_over", "ratio", lower,
+             "objects in the cells' sets that no ray from the cell hits / objects that are hit; an "
+             "upper bound"},
       Metric{"recall", "ratio", higher,
              "culled / cullable by a perfect method of its kind: back faces, what lies outside the "
              "frustum, or (all other methods) what is not visible"},

@@ -199,6 +199,7 @@ CellSummary summarise_cell(const JudgedCell& judged) {
   summary.calibrated = cell.costs.has_value();
   summary.build_ms = cell.build_ms;
   summary.bytes = cell.bytes;
+  summary.regions = cell.regions;
 
   std::uint64_t submitted = 0, draws = 0, pieces = 0;
   std::map<std::string, std::uint64_t> counters;
@@ -349,6 +350,8 @@ double CellSummary::metric(const std::string& name) const {
   if (name == "over") return over;
   if (name == "over_objects") return over_objects;
   if (name == "under") return under;
+  if (name == "region_misses") return regions ? static_cast<double>(regions->misses) : nan;
+  if (name == "region_over") return regions ? regions->over() : nan;
   if (name == "recall") return recall;
   if (name == "flicker") return judged ? flicker : nan;
   if (name == "pop") return if_judged(pop_px_frames);
@@ -371,6 +374,7 @@ bool is_free_of_errors(const CellSummary& cell) {
   if (!cell.judged || cell.false_px > 0 || (cell.drawn && cell.image_px > 0)) return false;
   if (cell.paints && cell.surface_px > 0) return false;
   if (cell.guarantee == Guarantee::image_exact) return true;
+  if (cell.regions && cell.regions->misses > 0) return false;
   return cell.false_jittered == 0 && cell.false_objects == 0;
 }
 

@@ -54,6 +54,8 @@ struct CellSummary {
   double over = 0.0, over_objects = 0.0, under = 0.0;
   /// Triangles culled / those that a perfect method of the kind (CullerInfo::culls) would cull.
   double recall = 0.0;
+  /// Of methods with a set for each cell, from all over the cells; the others have none.
+  std::optional<RegionVerdict> regions;
   double flicker = 0.0;  // toggles / changes from one frame to the next: frames - 1
   std::uint64_t pop_px_frames = 0, latency_frames = 0;
   double submitted_triangles = 0.0, visible_triangles = 0.0, kept_objects = 0.0;  // per frame
@@ -82,8 +84,8 @@ struct CellSummary {
 };
 
 /// True if the judge found no false pixel, the image (if drawn) unchanged, no lost sample of J and
-/// no false object. An image_exact method promises only the pixels, so what it loses between them
-/// is no error.
+/// no false object, no miss from a cell. An image_exact method promises only the pixels, so what it
+/// loses between them is no error.
 bool is_free_of_errors(const CellSummary& cell);
 
 struct BlockSummary {

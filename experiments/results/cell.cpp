@@ -99,6 +99,35 @@ GpuModel model_from_json(const json& dials) {
   return model;
 }
 
+struct RegionCount {
+  const char* name;
+  std::uint64_t RegionVerdict::*count;
+};
+
+constexpr RegionCount region_counts[] = {{"cells", &RegionVerdict::cells},
+                                         {"viewpoints", &RegionVerdict::viewpoints},
+                                         {"rays", &RegionVerdict::rays},
+                                         {"hits", &RegionVerdict::hits},
+                                         {"misses", &RegionVerdict::misses},
+                                         {"strays", &RegionVerdict::strays},
+                                         {"kept", &RegionVerdict::kept},
+                                         {"unseen", &RegionVerdict::unseen},
+                                         {"seen", &RegionVerdict::seen},
+                                         {"kept_by_points", &RegionVerdict::kept_by_points},
+                                         {"seen_by_points", &RegionVerdict::seen_by_points}};
+
+json regions_to_json(const RegionVerdict& regions) {
+  json j = json::object();
+  for (const RegionCount& entry : region_counts) j[entry.name] = regions.*entry.count;
+  return j;
+}
+
+RegionVerdict regions_from_json(const json& j) {
+  RegionVerdict regions;
+  for (const RegionCount& entry : region_counts) regions.*entry.count = j.at(entry.name);
+  return regions;
+}
+
 }  // namespace
 
 std::string CellKey::id() const { return hash_text(key_to_json(*this).dump()); }
@@ -182,6 +211,7 @@ std::string to_json(const ResultCell& cell) {
             {"context", cell.context}};
   if (cell.costs) j["costs"] = costs_to_json(*cell.costs);
   if (cell.device_model) j["device_model"] = model_to_json(*cell.device_model);
+  if (cell.regions) j["regions"] = regions_to_json(*cell.regions);
   // Names of files need not be UTF-8: what is not is replaced.
   return j.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
 }
@@ -244,6 +274,7 @@ std::optional<ResultCell> parse_cell(const std::string& text, const std::string&
     cell.context = j.at("context").get<std::map<std::string, std::string>>();
     if (j.contains("costs")) cell.costs = costs_from_json(j.at("costs"));
     if (j.contains("device_model")) cell.device_model = model_from_json(j.at("device_model"));
+    if (j.contains("regions")) cell.regions = regions_from_json(j.at("regions"));
     return cell;
   });
 }

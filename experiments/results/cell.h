@@ -9,6 +9,7 @@
 
 #include "common/culler/culler.h"
 #include "common/geometry/camera.h"
+#include "common/judge/region_truth.h"
 #include "common/render/gpu_model.h"
 
 namespace vislab {
@@ -88,6 +89,9 @@ struct ResultCell {
   std::optional<CostTable> costs;
   /// The dials of a modelled device, fitted ones included; none on other devices.
   std::optional<GpuModel> device_model = {};
+  /// Of methods that know what is seen from anywhere in a cell: their sets against region truth, by
+  /// CellKey::seed. Without witnesses.
+  std::optional<RegionVerdict> regions = {};
 };
 
 std::string to_string(ResultCell::Status status);

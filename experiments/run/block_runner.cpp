@@ -10,6 +10,7 @@
 
 #include "common/geometry/random.h"
 #include "common/judge/path_truth.h"
+#include "common/judge/region_truth.h"
 #include "common/scene/error.h"
 #include "common/simd/simd_target.h"
 #include "experiments/calibration/calibration.h"
@@ -288,8 +289,27 @@ class BlockRun {
             std::chrono::steady_clock::now() - start;
         if (runner.cell.rounds.empty()) runner.cell.build_ms = elapsed.count();
         runner.cell.bytes = runner.culler->bytes();
+        if (wanted) judge_regions(runner);
       });
     }
+    region_judge_.reset();
+  }
+
+  /// What is traced from the scene's cells serves all cullers of the block.
+  void judge_regions(Runner& runner) {
+    if (scene_->cells.empty() || !region_set(*runner.culler, 0, *scene_)) return;
+    progress_.step(block_.title() + ": rays from all over the cells", 0.2);
+    if (!region_judge_) {
+      RegionSettings settings;
+      settings.seed = block_.seed;
+      settings.threads = block_.threads;
+      region_judge_ = std::make_unique<RegionJudge>(*scene_, settings);
+      region_truth_ = region_judge_->trace(reachable_cells(*scene_));
+    }
+    runner.cell.regions = region_judge_->judge(region_truth_, [&](CellId cell) {
+      return region_set(*runner.culler, cell, *scene_).value_or(std::vector<ObjectId>());
+    });
+    runner.cell.regions->witnesses.clear();
   }
 
   void make_device_of_block() {
@@ -451,6 +471,8 @@ class BlockRun {
   std::map<std::string, std::string> context_;
   TruthSettings truth_settings_;
   std::unique_ptr<RayCaster> caster_;
+  std::unique_ptr<RegionJudge> region_judge_;  // while cullers are built
+  std::vector<CellTruth> region_truth_;
   std::unique_ptr<PathTruth> truth_;
   std::vector<std::string> truth_keys_;
   std::unique_ptr<RenderDevice> device_;  // null: nothing is drawn

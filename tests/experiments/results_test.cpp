@@ -62,6 +62,21 @@ TEST(ResultCell, KeepsTheDialsOfAModelledDevice) {
   EXPECT_EQ(parse_cell(to_json(cell), "test").value().device_model, cell.device_model);
 }
 
+TEST(ResultCell, KeepsTheVerdictOnTheSetsOfCells) {
+  ResultCell cell = sample_cell();
+  EXPECT_FALSE(parse_cell(to_json(cell), "test").value().regions.has_value());
+  cell.regions.emplace();
+  cell.regions->rays = 700;
+  cell.regions->misses = 3;
+  cell.regions->unseen = 2;
+  cell.regions->seen = 8;
+  const ResultCell back = parse_cell(to_json(cell), "test").value();
+  ASSERT_TRUE(back.regions.has_value());
+  EXPECT_EQ(back.regions->rays, 700U);
+  EXPECT_EQ(back.regions->misses, 3U);
+  EXPECT_EQ(back.regions->over(), 0.25);
+}
+
 TEST(ResultCell, KeepsEveryCostWithItsUnitAndSpread) {
   const nlohmann::json costs = nlohmann::json::parse(to_json(sample_cell())).at("costs");
   EXPECT_EQ(costs.size(), cost_quantities().size());
