@@ -145,10 +145,9 @@ class LeakFinder {
 
   /// Is the first that the line meets of some closed object its inside?
   bool starts_in_closed_object(const Line& line) const {
-    constexpr double step_m = 1e-4;
     std::vector<ObjectId> entered;
     for (Hit hit = next_hit(line, 0.0); hit.triangle != none_id;
-         hit = next_hit(line, hit.distance + step_m)) {
+         hit = next_hit(line, 1e-6 + hit.distance * (1.0 + 1e-6))) {
       const ObjectId object = scene_.object_of(hit.triangle);
       if (!scene_.mesh_of(object).closed || std::ranges::find(entered, object) != entered.end()) {
         continue;
