@@ -102,7 +102,7 @@ class PlanPainter {
     return bounds;
   }
 
-  /// What was reached on the storey of the eye, but for parts that are as large as half of the
+  /// What was reached on the storey of the eye, but for cells that are larger than half of the
   /// scene: the world around a house.
   PlanBounds storey_bounds() const {
     const PlanBounds all = all_bounds();
@@ -110,16 +110,17 @@ class PlanPainter {
     PlanBounds bounds;
     bounds.extend(seen_from_above(input_.frame->camera.pose.eye));
     bool any = false;
-    for_each_region([&](const ConvexRegion& region, bool reached) {
-      if (!reached) return;
-      PlanBounds part;
-      for (const glm::dvec2& corner : cut_at(region, height())) part.extend(corner);
-      const glm::dvec2 size = part.max - part.min;
-      if (!(size.x > 0.0) || std::max(size.x / half.x, size.y / half.y) > 1.0) return;
-      bounds.extend(part.min);
-      bounds.extend(part.max);
-      any = true;
-    });
+    for (const CellId id : input_.reached) {
+      const Cell& cell = input_.scene->cells[id];
+      const glm::vec3 size = cell.bounds.max - cell.bounds.min;
+      if (size.x > half.x && size.z > half.y) continue;
+      for (const ConvexRegion& region : cell.regions) {
+        for (const glm::dvec2& corner : cut_at(region, height())) {
+          bounds.extend(corner);
+          any = true;
+        }
+      }
+    }
     return any ? bounds : all;
   }
 

@@ -45,7 +45,7 @@ std::vector<CellId> cells_that_hold(const Scene& scene, const VisibleSet& kept) 
 std::size_t most_telling(const std::vector<Verdict>& frames) {
   const auto best = std::ranges::max_element(frames, [](const Verdict& a, const Verdict& b) {
     return a.false_px != b.false_px ? a.false_px < b.false_px
-                                    : a.submitted_triangles > b.submitted_triangles;
+                                    : a.submitted_triangles < b.submitted_triangles;
   });
   return static_cast<std::size_t>(best - frames.begin());
 }

@@ -26,9 +26,10 @@ void write_plan_picture(const Scene& scene, const Frame& frame, const FrameTruth
                         const std::string& title, const std::filesystem::path& file);
 
 /// The same of a measured cell, from what the results hold: of the frame in which most false pixels
-/// were found, or else that in which most triangles were left out. The culler is run once more, for
-/// what it reached. Returns a caption that names the frame. Throws InputError if something is
-/// missing, if the scene is no longer the one that was measured, or has no cells.
+/// were found, or else that in which most triangles were kept, for there the view goes farthest.
+/// The culler is run once more, for what it reached. Returns a caption that names the frame. Throws
+/// InputError if something is missing, if the scene is no longer the one that was measured, or has
+/// no cells.
 std::string write_stored_plan(const std::filesystem::path& results, const Registry& cullers,
                               StoredScenes& scenes, const BlockSummary& block,
                               const CellSummary& cell, const std::filesystem::path& file);
