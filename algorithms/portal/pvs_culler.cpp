@@ -46,6 +46,9 @@ void PvsCuller::build(const Scene& scene, const BuildContext& context) {
 }
 
 void PvsCuller::reset(std::uint64_t) {
+  // So that the first frame counts as it did before.
+  std::ranges::fill(marked_places_, std::uint64_t{0});
+  std::ranges::fill(marked_, std::uint8_t{0});
   if (!any_moved_) return;
   for (std::size_t i = 0; i < is_free_.size(); ++i) is_free_[i] = lies_in_a_place_[i] ? 0 : 1;
   any_moved_ = false;
