@@ -8,8 +8,10 @@
 //   more, which only keeps more.
 // Cost: as the walk (portal_walk.h), with one clip of a polygon in space by at most `most_sides`
 //   planes for each portal.
-// Limits: the same as of portal.polygon. The near plane leaves out what lies before a portal, which
-//   only matters where objects reach out of cells.
+// Limits: those of portal.polygon; and a box beside a corner of what is left of the view, which is
+//   outside of none of its planes by itself, is kept, where portal.polygon asks the upright
+//   rectangle too. The near plane leaves out what lies before a portal, which only matters where
+//   objects reach out of cells.
 // Sources: Luebke and Georges 1995, figure 5 ("portal culling frustums"); Zachmann slides 77-89.
 
 #include <algorithm>
@@ -167,8 +169,8 @@ CullerInfo describe() {
       "a clip of a polygon in space for each way through a portal that is open to the "
       "view, and a test of the box for each object of the cells beyond";
   info.limits =
-      "Only walls hide, and only where cells and portals are known: outside of all cells it keeps "
-      "all that is in the frustum.";
+      "Keeps boxes beside the corners of doors that are rolled. Only walls hide, and only where "
+      "cells and portals are known: outside of all cells it keeps all that is in the frustum.";
   return info;
 }
 
