@@ -203,13 +203,14 @@ class CommandLine {
   void add_check() {
     CLI::App* const sub =
         verb("check", "contract tests on one culler or chain, or the cells of a scene", [this] {
-          if (name_.empty() == other_.empty()) {
+          if (checked_culler_.empty() == checked_scene_.empty()) {
             throw InputError("check takes either --culler or --scene");
           }
-          return name_.empty() ? check_scene(lab_, other_, json_) : check(lab_, name_, json_);
+          return checked_culler_.empty() ? check_scene(lab_, checked_scene_, json_)
+                                         : check(lab_, checked_culler_, json_);
         });
-    sub->add_option("--culler", name_, "does it keep its contract?");
-    sub->add_option("--scene", other_, "do its cells and portals fit together?");
+    sub->add_option("--culler", checked_culler_, "does it keep its contract?");
+    sub->add_option("--scene", checked_scene_, "do its cells and portals fit together?");
     add_json(sub);
   }
 
@@ -219,6 +220,7 @@ class CommandLine {
       "charts speed against accuracy"};
   std::function<int()> action_;
   std::string name_, other_;
+  std::string checked_culler_, checked_scene_;
   bool json_ = false;
   RunCall run_;
   ShowCall show_;
