@@ -50,10 +50,10 @@ CullerInfo describe() {
   info.cost =
       "a comparison of two rectangles for each way through a portal that is open to the "
       "view, and a test of the box for each object of the cells beyond";
-  info.limits =
-      "The rectangle around a portal that is rolled or seen at an angle shows more than the "
-      "portal. Only walls hide, and only where cells and portals are known: outside of all cells "
-      "it keeps all that is in the frustum.";
+  info.limits = std::string(
+                    "The rectangle around a portal that is rolled or seen at an angle shows more "
+                    "than the portal. ") +
+                limits_of_walks;
   return info;
 }
 

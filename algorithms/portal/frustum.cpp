@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 
+#include "algorithms/portal/convex_cut.h"
 #include "algorithms/portal/portal_culler.h"
 #include "common/culler/registry.h"
 
@@ -41,27 +42,17 @@ struct SpacePolygon {
 
   /// False if it is as a whole outside.
   bool cut(const Plane& plane) {
-    if (count + 1 >= capacity) return true;
     std::array<double, capacity> distance;
-    bool any_outside = false;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      distance[i] = plane.signed_distance(corners[i]);
-      any_outside = any_outside || distance[i] < 0.0;
-    }
-    if (!any_outside) return true;
+    for (std::uint32_t i = 0; i < count; ++i) distance[i] = plane.signed_distance(corners[i]);
     std::array<glm::dvec3, capacity> kept;
     std::uint32_t kept_count = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t next = i + 1 == count ? 0 : i + 1;
-      if (distance[i] >= 0.0) kept[kept_count++] = corners[i];
-      if ((distance[i] < 0.0) != (distance[next] < 0.0)) {
-        kept[kept_count++] = corners[i] + (corners[next] - corners[i]) *
-                                              (distance[i] / (distance[i] - distance[next]));
-      }
+    const Cut cut = cut_convex<glm::dvec3>(std::span(corners).first(count),
+                                           std::span(distance).first(count), kept, kept_count);
+    if (cut == Cut::in_two) {
+      std::copy_n(kept.begin(), kept_count, corners.begin());
+      count = kept_count;
     }
-    std::copy_n(kept.begin(), kept_count, corners.begin());
-    count = kept_count;
-    return count >= 3;
+    return cut != Cut::all_outside;
   }
 };
 
@@ -104,7 +95,7 @@ class FrustumRule {
     left.near = {-opening.plane.normal,
                  plane_slack_m - opening.plane.signed_distance(camera_.pose.eye)};
     left.side_count = 0;
-    if (corners.size() + 1 > SpacePolygon::capacity) {
+    if (corners.size() > SpacePolygon::capacity) {
       std::copy_n(view.sides.begin(), view.side_count, left.sides.begin());
       left.side_count = view.side_count;
       return true;
@@ -169,8 +160,7 @@ CullerInfo describe() {
       "a clip of a polygon in space for each way through a portal that is open to the "
       "view, and a test of the box for each object of the cells beyond";
   info.limits =
-      "Keeps boxes beside the corners of doors that are rolled. Only walls hide, and only where "
-      "cells and portals are known: outside of all cells it keeps all that is in the frustum.";
+      std::string("Keeps boxes beside the corners of doors that are rolled. ") + limits_of_walks;
   return info;
 }
 

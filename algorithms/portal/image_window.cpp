@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "algorithms/portal/convex_cut.h"
 #include "common/geometry/frustum.h"
 
 namespace vislab::portal_culling {
@@ -37,28 +38,15 @@ void ImagePolygon::set(const Rectangle& r) {
 
 bool ImagePolygon::cut(const ImageLine& line) {
   std::array<double, capacity> distance;
-  bool any_outside = false;
-  bool any_inside = false;
-  for (std::uint32_t k = 0; k < count_; ++k) {
-    distance[k] = line.distance(corners_[k]);
-    (distance[k] < 0.0 ? any_outside : any_inside) = true;
-  }
-  if (!any_outside) return true;
-  if (!any_inside) return false;
-  if (count_ + 1 >= capacity) return true;
+  for (std::uint32_t k = 0; k < count_; ++k) distance[k] = line.distance(corners_[k]);
   std::array<glm::dvec2, capacity> kept;
   std::uint32_t count = 0;
-  for (std::uint32_t k = 0; k < count_; ++k) {
-    const std::uint32_t next = k + 1 == count_ ? 0 : k + 1;
-    if (distance[k] >= 0.0) kept[count++] = corners_[k];
-    if ((distance[k] < 0.0) != (distance[next] < 0.0)) {
-      kept[count++] = corners_[k] + (corners_[next] - corners_[k]) *
-                                        (distance[k] / (distance[k] - distance[next]));
-    }
+  const Cut cut = cut_convex<glm::dvec2>(corners(), std::span(distance).first(count_), kept, count);
+  if (cut == Cut::in_two) {
+    std::copy_n(kept.begin(), count, corners_.begin());
+    count_ = count;
   }
-  std::copy_n(kept.begin(), count, corners_.begin());
-  count_ = count;
-  return true;
+  return cut != Cut::all_outside;
 }
 
 void ImagePolygon::find_bounds() {
@@ -98,32 +86,32 @@ Rectangle ImageMap::whole() const {
 bool ImageMap::image_of(std::span<const glm::dvec3> polygon, ImagePolygon& image) const {
   const bool perspective = camera_.lens.projection == Projection::perspective;
   const double near = camera_.lens.near_m;
-  const bool too_many = polygon.size() + 1 > ImagePolygon::capacity;
-  Rectangle bounds;
-  image.clear();
   const auto local = [&](const glm::dvec3& p) {
     const glm::dvec3 d = p - camera_.pose.eye;
     return glm::dvec3(glm::dot(camera_.pose.right, d), glm::dot(camera_.pose.up, d),
                       -glm::dot(camera_.pose.back, d));
   };
+  // A polygon that lies in the near plane may cross it at each of its edges, by rounding.
+  Rectangle bounds;
+  std::uint32_t count = 0;
+  std::uint32_t crossings = 0;
+  image.clear();
   const auto add = [&](const glm::dvec2& p) {
-    if (too_many) {
-      bounds.extend(p);
-    } else {
-      image.add(p);
-    }
+    bounds.extend(p);
+    if (++count <= ImagePolygon::capacity) image.add(p);
   };
   glm::dvec3 before = local(polygon.back());
   for (const glm::dvec3& corner : polygon) {
     const glm::dvec3 p = local(corner);
     if ((p.z < near) != (before.z < near)) {
+      ++crossings;
       const glm::dvec2 q(before + (p - before) * ((near - before.z) / (p.z - before.z)));
       add(perspective ? q / near : q);
     }
     if (p.z >= near) add(perspective ? glm::dvec2(p) / p.z : glm::dvec2(p));
     before = p;
   }
-  if (too_many && bounds.min.x <= bounds.max.x) image.set(bounds);
+  if (count > ImagePolygon::capacity || crossings > 2) image.set(bounds);
   return image.size() >= 3;
 }
 

@@ -2,6 +2,8 @@
 //
 // An object that comes back to where the scene has it is where the scene puts it again, so that
 // nothing depends on where objects were before.
+// Where something that closes cells is hidden or away (closing_objects.h), portals no longer tell
+// what is seen through its place.
 // Cost of a moved object: a search in the tree of regions, and its place in the lists of the cells
 //   that it leaves and enters.
 #pragma once
@@ -36,11 +38,26 @@ class ObjectPlaces {
     for (const ObjectId object : visitors_.back()) act(object);
   }
 
+  /// Calls act(box) for the places in the cell that something which closed it has left.
+  template <typename Act>
+  void for_each_gap(CellId cell, Act&& act) const {
+    if (gap_count_ == 0) return;
+    for (const ObjectId object : graph_->objects_of(cell)) {
+      if (leaves_gap(object)) act(home_boxes_[object]);
+    }
+  }
+
   std::size_t bytes() const;
 
  private:
   static constexpr std::uint8_t is_hidden = 1;
   static constexpr std::uint8_t is_away = 2;
+  static constexpr std::uint8_t is_closing = 4;
+
+  bool leaves_gap(ObjectId object) const {
+    return (state_[object] & is_closing) != 0 && (state_[object] & (is_hidden | is_away)) != 0;
+  }
+  void set_state(ObjectId object, std::uint8_t bit, bool is_set);
 
   template <typename Act>
   void for_each_home(std::span<const ObjectId> objects, Act& act) const {
@@ -54,6 +71,8 @@ class ObjectPlaces {
   const Scene* scene_ = nullptr;
   const PortalGraph* graph_ = nullptr;
   std::vector<std::uint8_t> state_;              // by object
+  std::vector<Aabb> home_boxes_;                 // by object: where the scene puts it
+  std::size_t gap_count_ = 0;                    // objects that leave one
   std::vector<std::vector<CellId>> cells_of_;    // by object: those away
   std::vector<std::vector<ObjectId>> visitors_;  // by cell, then those in none; ascending
   bool changed_ = false;                         // since the scene was as built

@@ -29,9 +29,7 @@ CullerInfo describe() {
   info.cost =
       "a clip of two polygons for each way through a portal that is open to the view, and "
       "a test of the box for each object of the cells beyond";
-  info.limits =
-      "Only walls hide, and only where cells and portals are known: outside of all cells it keeps "
-      "all that is in the frustum.";
+  info.limits = limits_of_walks;
   info.sources.emplace_back(
       "Teller and Séquin 1991, Visibility Preprocessing for Interactive "
       "Walkthroughs");

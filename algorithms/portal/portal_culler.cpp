@@ -43,27 +43,37 @@ void PortalCuller::cull(const Frame& frame, const Candidates& candidates, DrawSi
   frustum_ = frustum_of(frame.camera);
   start_marks();
   kept_.clear();
-  if (!find_start(frame.camera, start_cells_)) {
-    ++outside_;
+  if (!keep_by_portals(frame, candidates)) {
+    // A frame may come in several batches.
+    if (frame.index != last_outside_) ++outside_;
+    last_outside_ = frame.index;
+    kept_.clear();
     keep_in_frustum(frame, candidates);
-  } else {
-    everything_ = candidates.form() == Candidates::Form::everything;
-    if (!everything_) {
-      offered_.clear();
-      for (const std::span<const ObjectId> run : candidates.object_runs()) {
-        for (const ObjectId object : run) offered_.insert(object);
-      }
-    }
-    walk(frame, start_cells_);
-    const std::uint32_t last =
-        kept_.empty() ? 0 : std::ranges::max_element(kept_, {}, &Kept::depth)->depth + 1;
-    places_.for_each_free([&](ObjectId object) {
-      Mark& mark = mark_of(object, frame);
-      if (mark.state == State::in_frustum) keep(object, mark, last);
-    });
   }
   sort_kept();
   out.objects(std::span(sorted_).first(kept_.size()));
+}
+
+/// False if portals do not tell what is seen.
+bool PortalCuller::keep_by_portals(const Frame& frame, const Candidates& candidates) {
+  if (!find_start(frame.camera, start_cells_)) return false;
+  everything_ = candidates.form() == Candidates::Form::everything;
+  if (!everything_) {
+    offered_.clear();
+    for (const std::span<const ObjectId> run : candidates.object_runs()) {
+      for (const ObjectId object : run) offered_.insert(object);
+    }
+  }
+  sees_gap_ = false;
+  walk(frame, start_cells_);
+  if (sees_gap_) return false;
+  const std::uint32_t last =
+      kept_.empty() ? 0 : std::ranges::max_element(kept_, {}, &Kept::depth)->depth + 1;
+  places_.for_each_free([&](ObjectId object) {
+    Mark& mark = mark_of(object, frame);
+    if (mark.state == State::in_frustum) keep(object, mark, last);
+  });
+  return true;
 }
 
 void PortalCuller::keep_in_frustum(const Frame& frame, const Candidates& candidates) {

@@ -2,8 +2,10 @@
 // which order.
 //
 // Objects outside of one of the frustum's planes are never kept. In a camera whose near plane's
-// window is not covered by cells ("outside") all others are kept, as are those that lie in no cell.
-// What is kept comes in the order of how many portals lie before it, then objects without a cell.
+// window is not covered by cells ("outside") all others are kept, as they are where the view shows
+// the place of a wall that is hidden or has moved away ("gap"); and always those that lie in no
+// cell. What is kept comes in the order of how many portals lie before it, then objects without a
+// cell.
 #pragma once
 
 #include <cstdint>
@@ -23,13 +25,23 @@ namespace vislab::portal_culling {
 /// The parts of the declaration that they have in common.
 CullerInfo portal_culler_info(std::string name);
 
+/// What is to be said of the limits of every walk.
+inline constexpr const char* limits_of_walks =
+    "Only walls hide, and only where cells and portals are known: outside of all cells, and where "
+    "the view shows a place that a wall has left, it keeps all that is in the frustum. It takes "
+    "every wall for drawn: what a scene lets be seen through solid without a surface it leaves "
+    "out.";
+
 class PortalCuller : public ICuller, public CellWalker {
  public:
   explicit PortalCuller(CullerInfo info) : info_(std::move(info)) {}
 
   const CullerInfo& info() const override { return info_; }
   void build(const Scene& scene, const BuildContext& context) override;
-  void reset(std::uint64_t) override { places_.reset(); }
+  void reset(std::uint64_t) override {
+    places_.reset();
+    last_outside_ = no_frame;
+  }
   void update(const Frame& frame, const Changes& changes) override {
     places_.update(frame, changes);
   }
@@ -53,6 +65,7 @@ class PortalCuller : public ICuller, public CellWalker {
   template <typename Meets>
   void visit_cell(CellId cell, std::uint32_t depth, const Frame& frame, Meets&& meets) {
     reached_[cell] = cull_;
+    places_.for_each_gap(cell, [&](const Aabb& gap) { sees_gap_ = sees_gap_ || meets(gap); });
     places_.for_each_in(cell, [&](ObjectId object) {
       Mark& mark = mark_of(object, frame);
       if (mark.state == State::left_out) return;
@@ -67,6 +80,8 @@ class PortalCuller : public ICuller, public CellWalker {
   }
 
  private:
+  static constexpr std::uint64_t no_frame = ~std::uint64_t{0};
+
   enum class State : std::uint32_t { left_out, in_frustum, kept };
   struct Mark {
     std::uint32_t cull = 0;  // in which it was made
@@ -100,6 +115,7 @@ class PortalCuller : public ICuller, public CellWalker {
     kept_.push_back({object, depth});
   }
   void start_marks();
+  bool keep_by_portals(const Frame& frame, const Candidates& candidates);
   void keep_in_frustum(const Frame& frame, const Candidates& candidates);
   void sort_kept();
 
@@ -116,8 +132,10 @@ class PortalCuller : public ICuller, public CellWalker {
   std::vector<Kept> kept_;
   std::vector<std::uint32_t> place_of_depth_;
   std::vector<ObjectId> sorted_;
+  bool sees_gap_ = false;
   std::uint64_t objects_tested_ = 0;
-  std::uint64_t outside_ = 0;
+  std::uint64_t outside_ = 0;  // frames
+  std::uint64_t last_outside_ = no_frame;
 };
 
 /// A culler that walks by a rule (portal_walk.h), which also has

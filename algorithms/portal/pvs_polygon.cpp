@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "algorithms/portal/convex_cut.h"
+
 namespace vislab::portal_culling {
 namespace {
 
@@ -68,27 +70,16 @@ void append_through_edges(const FlowPolygon& edges, const FlowPolygon& corners,
 
 bool FlowPolygon::clip(const HalfSpace& half) {
   std::array<double, capacity> distance;
-  std::uint32_t inside = 0;
-  for (std::uint32_t i = 0; i < count_; ++i) {
-    distance[i] = half.distance(corners_[i]);
-    inside += distance[i] >= 0.0 ? 1 : 0;
-  }
-  if (inside == count_) return true;
-  if (inside == 0) return false;
-  if (count_ + 1 > capacity) return true;
+  for (std::uint32_t i = 0; i < count_; ++i) distance[i] = half.distance(corners_[i]);
   std::array<glm::dvec3, capacity> kept;
   std::uint32_t count = 0;
-  for (std::uint32_t i = 0; i < count_; ++i) {
-    const std::uint32_t next = i + 1 == count_ ? 0 : i + 1;
-    if (distance[i] >= 0.0) kept[count++] = corners_[i];
-    if ((distance[i] >= 0.0) != (distance[next] >= 0.0)) {
-      kept[count++] = corners_[i] + (corners_[next] - corners_[i]) *
-                                        (distance[i] / (distance[i] - distance[next]));
-    }
+  const Cut cut = cut_convex<glm::dvec3>(std::span(corners_).first(count_),
+                                         std::span(distance).first(count_), kept, count);
+  if (cut == Cut::in_two) {
+    std::copy_n(kept.begin(), count, corners_.begin());
+    count_ = count;
   }
-  std::copy_n(kept.begin(), count, corners_.begin());
-  count_ = count;
-  return true;
+  return cut != Cut::all_outside;
 }
 
 double FlowPolygon::farthest(const HalfSpace& half) const {

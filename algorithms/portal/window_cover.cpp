@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "algorithms/portal/convex_cut.h"
+
 namespace vislab::portal_culling {
 namespace {
 
@@ -23,27 +25,24 @@ double WindowPiece::area() const {
 }
 
 bool WindowPiece::cut(const WindowLine& line, WindowPiece* outside) {
+  std::array<double, capacity> distance;
+  const std::span<double> distances = std::span(distance).first(count);
+  for (std::uint32_t i = 0; i < count; ++i) distance[i] = line.distance(corners[i]);
   if (outside != nullptr) outside->count = 0;
-  if (count + 1 >= capacity) {
-    if (outside == nullptr) return true;
-    std::swap(*this, *outside);
-    return false;
-  }
   WindowPiece inside;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const glm::dvec2& here = corners[i];
-    const glm::dvec2& next = corners[i + 1 == count ? 0 : i + 1];
-    const double at_here = line.distance(here);
-    const double at_next = line.distance(next);
-    if (at_here >= 0.0) inside.corners[inside.count++] = here;
-    if (outside != nullptr && at_here < 0.0) outside->corners[outside->count++] = here;
-    if ((at_here < 0.0) == (at_next < 0.0)) continue;
-    const glm::dvec2 between = here + (next - here) * (at_here / (at_here - at_next));
-    inside.corners[inside.count++] = between;
-    if (outside != nullptr) outside->corners[outside->count++] = between;
+  Cut cut = cut_convex<glm::dvec2>(span(), distances, inside.corners, inside.count);
+  if (cut == Cut::in_two && outside != nullptr) {
+    for (double& d : distances) d = -d;
+    cut = cut_convex<glm::dvec2>(span(), distances, outside->corners, outside->count);
+    if (cut != Cut::in_two) cut = Cut::all_outside;  // touches the line, or cannot be divided
   }
-  count = inside.count;
-  std::copy_n(inside.corners.begin(), count, corners.begin());
+  if (cut == Cut::in_two) {
+    count = inside.count;
+    std::copy_n(inside.corners.begin(), count, corners.begin());
+  } else if (cut == Cut::all_outside || (cut == Cut::undecided && outside != nullptr)) {
+    if (outside != nullptr) *outside = *this;
+    count = 0;
+  }
   return count > 0;
 }
 

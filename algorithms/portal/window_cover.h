@@ -28,7 +28,7 @@ struct WindowPiece {
   std::span<const glm::dvec2> span() const { return {corners.data(), count}; }
   double area() const;
   /// Takes away what is outside of the line, and puts it into `outside` unless that is null. False
-  /// if nothing is left. A piece with too many corners is not divided: it stays, or is outside as a
+  /// if nothing is left. A piece that cannot be divided (convex_cut.h) stays, or is outside as a
   /// whole where that is asked.
   bool cut(const WindowLine& line, WindowPiece* outside = nullptr);
 };

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "common/scene/convex_region.h"
 #include "common/scene/generators/generators.h"
 #include "common/scene/scene.h"
 
@@ -44,6 +45,8 @@ struct RoomLine {
 };
 
 namespace rooms_of_tests {
+
+using vislab::box_region;
 
 inline void add_quad(Mesh& mesh, const std::array<glm::dvec3, 4>& quad) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -92,19 +95,6 @@ inline Mesh shell(const RoomLine& line, std::uint32_t room) {
     add_quad(mesh, {{{x, 0, -w}, {x, h, -w}, {x, h, w}, {x, 0, w}}});
   }
   return mesh;
-}
-
-inline ConvexRegion box_region(const glm::dvec3& min, const glm::dvec3& max) {
-  ConvexRegion region;
-  region.bounds.extend(glm::vec3(min));
-  region.bounds.extend(glm::vec3(max));
-  for (int axis = 0; axis < 3; ++axis) {
-    glm::dvec3 normal(0.0);
-    normal[axis] = 1.0;
-    region.planes.push_back({normal, -min[axis]});
-    region.planes.push_back({-normal, max[axis]});
-  }
-  return region;
 }
 
 }  // namespace rooms_of_tests

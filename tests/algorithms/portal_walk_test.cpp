@@ -272,6 +272,69 @@ TEST(PortalWalk, FollowsFurnitureFromRoomToRoomAndBack) {
   EXPECT_FALSE(kept_by(lab.polygon(), camera).contains(box));
 }
 
+TEST(PortalWalk, SeesThroughThePlaceOfAWallThatIsHiddenOrHasGone) {
+  const RoomLine line{.rooms = 4};
+  Lab lab(make_room_line(line));
+  ObjectId wall = none_id;  // between rooms 0 and 1
+  for (ObjectId object = 0; object < lab.scene().object_count() && wall == none_id; ++object) {
+    if (lab.scene().mesh_of(object).name == "wall") wall = object;
+  }
+  ASSERT_NE(wall, none_id);
+  const glm::dvec3 eye = RoomLine::middle(0);
+  const Camera camera = looking(eye, eye + glm::dvec3(1.0, 0.0, 0.6));
+  const std::size_t closed = lab.check(camera);
+  lab.update(camera, {{}, {}, {}, {wall}});
+  EXPECT_GT(lab.check(camera), closed);
+  // Away from its place nothing is different.
+  const Camera elsewhere =
+      looking(RoomLine::middle(3), RoomLine::middle(3) + glm::dvec3(0.5, 0, 1));
+  EXPECT_LT(lab.check(elsewhere), count_in_frustum(lab.scene(), camera));
+  lab.update(camera, {{}, {}, {wall}, {}});
+  EXPECT_EQ(lab.check(camera), closed);
+  glm::dmat4x3 moved = lab.scene().objects[wall].transform;
+  moved[3] += glm::dvec3(0.0, 20.0, 0.0);
+  lab.update(camera, {{wall}, {moved}, {}, {}});
+  EXPECT_GT(lab.check(camera), closed);
+}
+
+// The corners of a portal that lies in the near plane are before and behind it by rounding alone.
+TEST(PortalWalk, GoesThroughAPortalOfManyCornersThatLiesInTheNearPlane) {
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(0.6, 0.1, 0.8));
+  const glm::dvec3 aside = glm::normalize(glm::cross(glm::dvec3(0.0, 1.0, 0.0), normal));
+  const glm::dvec3 up = glm::cross(normal, aside);
+  std::vector<glm::dvec3> corners;
+  for (int i = 0; i < 23; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / 23.0;
+    corners.push_back(0.9 * (std::cos(angle) * aside + std::sin(angle) * up));
+  }
+  Scene scene = make_room_line({.rooms = 1});
+  for (const double side : {1.0, -1.0}) {
+    Cell cell;
+    std::vector<Plane> planes{{side * normal, 0.0}};
+    for (const glm::dvec3& p : {aside, -aside, up, -up, -side * normal}) planes.push_back({p, 9.0});
+    cell.regions = {*region_inside(planes)};
+    cell.bounds = cell.regions[0].bounds;
+    scene.cells.push_back(cell);
+  }
+  const auto first = static_cast<CellId>(scene.cells.size() - 2);
+  scene.portals.push_back(make_portal(corners, first, first + 1));
+  std::ranges::reverse(corners);
+  scene.portals.push_back(make_portal(corners, first + 1, first));
+  scene.finish();
+  std::uint32_t through = 0;
+  for (const std::string& variant : variants) {
+    CullerRun run(variant, scene);
+    for (int i = 0; i < 200; ++i) {
+      const double near = 0.02 + 0.0014 * i;
+      Camera camera = looking(normal * near + 0.01 * aside, 0.01 * aside);
+      camera.lens = perspective_lens(1.0, 1.0, near, 100.0);
+      run.objects(camera);
+    }
+    through += run.counter("cells_visited") > 0 ? 1 : 0;
+  }
+  EXPECT_EQ(through, variants.size());
+}
+
 TEST(PortalWalk, KeepsWhatAnOrthographicCameraSees) {
   Lab lab(make_room_line({.rooms = 4, .holes = 2, .roll_deg = 10.0}));
   Camera camera = looking(RoomLine::middle(1), RoomLine::middle(3) + glm::dvec3(0.0, 0.0, 1.0));
