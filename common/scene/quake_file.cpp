@@ -147,8 +147,9 @@ void require_vertices(const File& file, const FaceRecord& face, const LumpReader
   }
 }
 
-/// The tree's nodes and leaves, each reached at most once, so that descending always ends.
-void check_tree(const File& file, const LumpReader& reader) {
+/// The tree's nodes and leaves, each reached at most once, so that descending always ends. By leaf:
+/// whether it is reached.
+std::vector<std::uint8_t> check_tree(const File& file, const LumpReader& reader) {
   if (file.nodes.empty()) reader.fail("has no BSP node");
   if (file.leaves.empty()) reader.fail("has no BSP leaf");
   std::vector<std::uint8_t> reached(file.nodes.size(), 0);
@@ -171,12 +172,14 @@ void check_tree(const File& file, const LumpReader& reader) {
         reader.require_range(-(child + 1), 1, file.leaves.size(), "BSP leaf");
         // All that is solid may be one leaf.
         const auto leaf = static_cast<std::size_t>(-(child + 1));
-        if (leaf_reached[leaf]++ != 0 && file.leaves[leaf].cluster >= 0) {
+        if (leaf_reached[leaf] != 0 && file.leaves[leaf].cluster >= 0) {
           reader.fail("is damaged: BSP leaf " + std::to_string(leaf) + " has two parents");
         }
+        leaf_reached[leaf] = 1;
       }
     }
   }
+  return leaf_reached;
 }
 
 void check_faces(const File& file, const LumpReader& reader) {
@@ -234,6 +237,48 @@ void read_visible(File& file, const LumpReader& reader) {
                 " bytes");
   }
   file.visible.assign(data.begin() + 8, data.begin() + 8 + rows * row);
+  // Rows are whole bytes; bits beyond the last cluster name none, and nobody behind this looks.
+  for (std::int64_t r = 0; r < rows; ++r) {
+    const auto begin = file.visible.begin() + static_cast<std::ptrdiff_t>(r * row);
+    std::fill(begin + static_cast<std::ptrdiff_t>((rows + 7) / 8),
+              begin + static_cast<std::ptrdiff_t>(row), std::uint8_t{0});
+    if (rows % 8 != 0) {
+      std::uint8_t& last = begin[static_cast<std::ptrdiff_t>(rows / 8)];
+      last = static_cast<std::uint8_t>(last & ((1U << (rows % 8)) - 1U));
+    }
+  }
+}
+
+/// A leaf that was damaged into a solid one would be taken for a wall, and all beyond it for
+/// hidden. Compilers give solid leaves no area and no face, and number no cluster that has no leaf.
+/// (They do leave solid leaves without brushes, in the void around a world.) The leaves that the
+/// tree does not reach are the brush models', and one that is empty by custom.
+void check_clusters(const File& file, const std::vector<std::uint8_t>& reached,
+                    const LumpReader& reader) {
+  std::vector<std::uint8_t> used(static_cast<std::size_t>(file.cluster_count), 0);
+  for (std::size_t i = 0; i < file.leaves.size(); ++i) {
+    const LeafRecord& leaf = file.leaves[i];
+    reader.require_range(leaf.first_face, leaf.face_count, file.leaf_faces.size(), "leaf face");
+    if (leaf.cluster < -1 || (!file.visible.empty() && leaf.cluster >= file.cluster_count)) {
+      reader.fail("is damaged: a leaf in cluster " + std::to_string(leaf.cluster) + " of " +
+                  std::to_string(file.cluster_count));
+    }
+    if (leaf.cluster < 0 && (leaf.face_count > 0 || leaf.area != -1)) {
+      reader.fail("is damaged: leaf " + std::to_string(i) +
+                  " is in no cluster, so it must be solid, but it has " +
+                  std::to_string(leaf.face_count) + " faces and area " + std::to_string(leaf.area) +
+                  "; solid leaves have no face and area -1");
+    }
+    if (reached[i] != 0 && leaf.cluster >= 0 && !file.visible.empty()) {
+      used[static_cast<std::size_t>(leaf.cluster)] = 1;
+    }
+  }
+  const auto unused = std::ranges::find(used, std::uint8_t{0});
+  if (unused != used.end()) {
+    reader.fail("is damaged: no leaf of its BSP tree is in cluster " +
+                std::to_string(unused - used.begin()) + " of " +
+                std::to_string(file.cluster_count) + "; every cluster must have one");
+  }
 }
 
 }  // namespace
@@ -253,16 +298,10 @@ File read_file(const std::string& bytes, const std::string& where) {
   file.faces = reader.records<FaceRecord>(faces_lump, "faces");
   read_visible(file, reader);
 
-  check_tree(file, reader);
+  const std::vector<std::uint8_t> reached = check_tree(file, reader);
   check_faces(file, reader);
   if (file.models.empty()) reader.fail("has no model; the first one is the world itself");
-  for (const LeafRecord& leaf : file.leaves) {
-    reader.require_range(leaf.first_face, leaf.face_count, file.leaf_faces.size(), "leaf face");
-    if (leaf.cluster < -1 || (!file.visible.empty() && leaf.cluster >= file.cluster_count)) {
-      reader.fail("is damaged: a leaf in cluster " + std::to_string(leaf.cluster) + " of " +
-                  std::to_string(file.cluster_count));
-    }
-  }
+  check_clusters(file, reached, reader);
   for (const std::int32_t face : file.leaf_faces) {
     reader.require_range(face, 1, file.faces.size(), "face");
   }

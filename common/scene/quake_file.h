@@ -62,8 +62,9 @@ struct File {
 };
 
 /// Reads and checks: afterwards every index and range is valid, every node is reached once at most
-/// from node 0, and every patch has an odd grid of 3 × 3 control points or more. `where` begins
-/// messages. Throws InputError.
+/// from node 0, every patch has an odd grid of 3 × 3 control points or more, leaves without a
+/// cluster are as compilers make solid ones, every cluster has a leaf, and no bit of `visible` is
+/// set beyond the last cluster. `where` begins messages. Throws InputError.
 File read_file(const std::string& bytes, const std::string& where);
 
 }  // namespace vislab::quake

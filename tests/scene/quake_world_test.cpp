@@ -319,6 +319,38 @@ TEST_F(QuakeWorldFile, RefusesIndicesOutOfRange) {
   expect_refused([](SmallWorld& w) { w.models.clear(); }, "no model");
 }
 
+TEST_F(QuakeWorldFile, LeavesOutBitsOfVisibleSetsThatNameNoCluster) {
+  SmallWorld world;
+  world.visible = std::string("\2\0\0\0\1\0\0\0\xff\xfe", 10);
+  EXPECT_EQ(load(world).quake->visible, (std::vector<std::uint8_t>{0b11, 0b10}));
+  // Rows of two bytes more than are needed.
+  world.visible = std::string("\2\0\0\0\3\0\0\0\x07\xff\xff\xfd\xff\xff", 14);
+  EXPECT_EQ(load(world).quake->visible, (std::vector<std::uint8_t>{0b11, 0, 0, 0b01, 0, 0}));
+}
+
+TEST_F(QuakeWorldFile, RefusesLeavesThatCannotBeSolidThoughTheyAreInNoCluster) {
+  SmallWorld world;
+  world.leaves[2].cluster = -1;
+  EXPECT_TRUE(says(refused(world), "leaf 2 is in no cluster"));
+  world.leaves[2].area = -1;
+  EXPECT_TRUE(says(refused(world), "2 faces and area -1"));
+  world.leaves[2].face_count = 0;
+  world.leaves[2].area = 0;
+  EXPECT_TRUE(says(refused(world), "0 faces and area 0"));
+  // As solid as can be, but cluster 1 is left without a leaf.
+  world.leaves[2].area = -1;
+  EXPECT_TRUE(says(refused(world), "cluster 1 of 2"));
+  world.visible.clear();
+  EXPECT_EQ(load(world).cells.size(), 1U)
+      << "without sets nothing says how many clusters there are";
+}
+
+TEST_F(QuakeWorldFile, RefusesClustersWhoseOnlyLeafTheTreeDoesNotReach) {
+  SmallWorld world;
+  world.nodes[0].children[1] = -1;
+  EXPECT_TRUE(says(refused(world), "cluster 1 of 2"));
+}
+
 TEST_F(QuakeWorldFile, RefusesPlanesAndCornersThatAreNone) {
   SmallWorld world;
   world.planes[0].normal[1] = 0.5F;
