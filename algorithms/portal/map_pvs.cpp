@@ -5,12 +5,12 @@
 //   anywhere in it. An object lies in all leaves that its triangles reach into, and is kept if any
 //   of them is in a cluster that the viewer's sees.
 // Guarantee: conservative from positions that a player can reach, as far as the map's compiler was:
-//   it drops gaps narrower than its tolerance (0.1 unit, 3 mm, in the common ones). Whoever stands
-//   in a wall, so that the eye or a corner of the near plane's window is in no cluster, keeps
-//   everything in the frustum; from a void outside of the world that has a cluster nothing is
-//   promised.
-// Cost: O(candidates) and at most 6 plane tests for each that is in the set; nothing is computed
-//   but when the viewer's cluster changes.
+//   it drops gaps narrower than its tolerance (0.1 unit, 3 mm, in the common ones). The rays of an
+//   image begin in the near plane's window, so the sets of all clusters that it reaches into are
+//   united. Where any of it is in no cluster, as in a wall, everything in the frustum is kept; from
+//   a void outside of the world that has a cluster nothing is promised.
+// Cost: O(candidates) and at most 6 plane tests for each that is in the set; the window goes down
+//   the tree in each frame, and objects are marked anew when what it finds changes.
 // Limits: for Quake III worlds only; other scenes are culled by the frustum alone, a world without
 //   visibility data is refused. Objects that move, doors among them, are tested against the frustum
 //   only. Orthographic cameras, whose rays begin far apart, keep everything in the frustum.
@@ -20,6 +20,7 @@
 #include <string>
 
 #include "algorithms/portal/pvs_culler.h"
+#include "algorithms/portal/window_cover.h"
 #include "common/culler/registry.h"
 #include "common/scene/error.h"
 #include "common/scene/quake_world.h"
@@ -29,6 +30,11 @@ namespace {
 
 using portal_culling::ObjectsByPlace;
 using portal_culling::PvsCuller;
+using portal_culling::WindowLine;
+using portal_culling::WindowPiece;
+
+/// A ray that begins this near to a plane of the tree begins on both sides: rounding.
+constexpr double window_slack_m = 1e-6;
 
 CullerInfo describe() {
   CullerInfo info;
@@ -36,7 +42,7 @@ CullerInfo describe() {
   info.family = "portal";
   info.summary =
       "Keeps what lies in the frustum and in a leaf that a Quake III world's own potentially "
-      "visible set says can be seen from the viewer's cluster.";
+      "visible set says can be seen from the viewer's clusters.";
   info.guarantee = Guarantee::conservative;
   info.repeatability = Repeatability::stateless;
   info.granularity = Granularity::object;
@@ -44,8 +50,9 @@ CullerInfo describe() {
   info.space = Space::object;
   info.stage = PipelineStage::application;
   info.cost =
-      "O(candidates), at most 6 plane tests for each that is in the set; objects are marked anew "
-      "only when the viewer's cluster changes";
+      "O(candidates), at most 6 plane tests for each that is in the set; the planes of the world's "
+      "tree that cut the near plane's window; objects are marked anew only when the viewer's "
+      "clusters change";
   info.limits =
       "Conservative from positions that a player can reach only, and up to the tolerance of the "
       "compiler of the map (mostly 3 mm). Scenes that are no Quake III worlds are culled by the "
@@ -85,6 +92,7 @@ class MapPvs : public PvsCuller {
       }
     }
     objects.assign(world_->cluster_count, std::move(pairs));
+    waiting_.reserve(128);  // deeper trees than game worlds have make it grow once
     for (std::size_t leaf = 0; leaf < world_->cell_of_leaf.size(); ++leaf) {
       const CellId cell = world_->cell_of_leaf[leaf];
       if (cell != none_id) clusters_of_cell_[cell].push_back(world_->leaves[leaf].cluster);
@@ -96,14 +104,33 @@ class MapPvs : public PvsCuller {
     if (world_ == nullptr || camera.lens.projection == Projection::orthographic) return false;
     const Lens& lens = camera.lens;
     const glm::dvec3 middle = camera.pose.eye - camera.pose.back * lens.near_m;
-    for (const double x : {lens.left, lens.right}) {
-      for (const double y : {lens.bottom, lens.top}) {
-        if (cluster_at(middle + camera.pose.right * x + camera.pose.up * y) < 0) return false;
+    waiting_.clear();
+    waiting_.push_back({0,
+                        {{{{lens.left, lens.bottom},
+                           {lens.right, lens.bottom},
+                           {lens.right, lens.top},
+                           {lens.left, lens.top}}},
+                         4}});
+    while (!waiting_.empty()) {
+      Waiting here = waiting_.back();
+      waiting_.pop_back();
+      if (here.node < 0) {
+        const std::int32_t cluster =
+            world_->leaves[static_cast<std::size_t>(-(here.node + 1))].cluster;
+        if (cluster < 0) return false;
+        add_row(cluster, places);
+        continue;
       }
+      const QuakeNode& node = world_->nodes[static_cast<std::size_t>(here.node)];
+      const Plane& plane = world_->planes[node.plane];
+      const WindowLine line{glm::dot(plane.normal, camera.pose.right),
+                            glm::dot(plane.normal, camera.pose.up), plane.signed_distance(middle)};
+      const WindowLine behind{-line.right, -line.up, -line.offset};
+      Waiting back{node.back, here.piece};
+      if (back.piece.cut(behind.moved(window_slack_m))) waiting_.push_back(back);
+      here.node = node.front;
+      if (here.piece.cut(line.moved(window_slack_m))) waiting_.push_back(here);
     }
-    const std::int32_t cluster = cluster_at(camera.pose.eye);
-    if (cluster < 0) return false;
-    add_row(cluster, places);
     return true;
   }
 
@@ -114,7 +141,7 @@ class MapPvs : public PvsCuller {
   }
 
   std::size_t bytes_of_sets() const override {
-    std::size_t total = 0;
+    std::size_t total = waiting_.capacity() * sizeof(Waiting);
     for (const auto& clusters : clusters_of_cell_) {
       total += sizeof(clusters) + clusters.capacity() * sizeof(std::int32_t);
     }
@@ -122,20 +149,26 @@ class MapPvs : public PvsCuller {
   }
 
  private:
-  std::int32_t cluster_at(const glm::dvec3& point) const {
-    return world_->leaves[world_->leaf_at(point)].cluster;
-  }
+  /// What of the near plane's window comes to a node, or to leaf -(node + 1).
+  struct Waiting {
+    std::int32_t node;
+    WindowPiece piece;
+  };
 
   void add_row(std::int32_t cluster, std::span<std::uint64_t> places) const {
     const std::uint8_t* row =
         world_->visible.data() + static_cast<std::size_t>(cluster) * world_->bytes_per_cluster;
-    for (std::size_t i = 0; i < (world_->cluster_count + 7U) / 8U; ++i) {
-      places[i / 8] |= std::uint64_t{row[i]} << (8 * (i % 8));
+    const std::size_t count = world_->cluster_count;
+    for (std::size_t i = 0; i < (count + 7) / 8; ++i) {
+      // A row's last byte may have bits for clusters that there are not.
+      const unsigned known = count - 8 * i < 8 ? (1U << (count - 8 * i)) - 1U : 0xFFU;
+      places[i / 8] |= std::uint64_t{row[i] & known} << (8 * (i % 8));
     }
   }
 
   const QuakeWorld* world_ = nullptr;  // null: the scene is none
   std::vector<std::vector<std::int32_t>> clusters_of_cell_;
+  std::vector<Waiting> waiting_;
 };
 
 }  // namespace

@@ -31,6 +31,7 @@ void ObjectsByPlace::assign(std::size_t places,
 }
 
 void PvsCuller::build(const Scene& scene, const BuildContext& context) {
+  scene_ = &scene;
   objects_ = build_sets(scene, context);
   const std::size_t places = objects_.first.empty() ? 0 : objects_.first.size() - 1;
   lies_in_a_place_.assign(scene.object_count(), 0);
@@ -54,8 +55,11 @@ void PvsCuller::reset(std::uint64_t) {
   any_moved_ = false;
 }
 
-void PvsCuller::update(const Frame&, const Changes& changes) {
-  for (const ObjectId object : changes.moved) is_free_[object] = 1;
+void PvsCuller::update(const Frame& frame, const Changes& changes) {
+  for (const ObjectId object : changes.moved) {
+    const bool away = frame.objects.transforms[object] != scene_->objects[object].transform;
+    is_free_[object] = away || !lies_in_a_place_[object] ? 1 : 0;
+  }
   any_moved_ = any_moved_ || !changes.moved.empty();
 }
 

@@ -23,7 +23,8 @@ struct ObjectsByPlace {
 
 /// Keeps the objects of all places that are seen from the viewer's, if the frustum's planes do not
 /// exclude them; where the viewer is in no place, all in the frustum. Objects that lie in no place,
-/// and those that have moved, are tested against the frustum only: no set tells of them.
+/// and those that are elsewhere than the scene puts them, are tested against the frustum only: no
+/// set tells of them. The scene outlives the culler.
 class PvsCuller : public ICuller {
  public:
   explicit PvsCuller(CullerInfo info) : info_(std::move(info)) {}
@@ -50,9 +51,10 @@ class PvsCuller : public ICuller {
   void mark();
 
   CullerInfo info_;
+  const Scene* scene_ = nullptr;
   ObjectsByPlace objects_;
   std::vector<std::uint8_t> lies_in_a_place_;  // by object, as built
-  std::vector<std::uint8_t> is_free_;          // by object: of no place, or moved
+  std::vector<std::uint8_t> is_free_;          // by object: of no place, or away
   bool any_moved_ = false;
   BitWords seen_;                     // places, of this call
   BitWords marked_places_;            // those whose objects are marked

@@ -19,6 +19,8 @@ namespace {
 constexpr double touching_m = 1e-5;
 /// What separating planes give way by.
 constexpr double separator_slack_m = 1e-6;
+/// Corners of a portal and of its way back: rounding of the edges' enlargement.
+constexpr double same_corner_m = 1e-7;
 constexpr std::size_t batch_size = 64;
 
 /// A directed opening.
@@ -275,17 +277,39 @@ class PvsBuilder {
     return std::move(found_);
   }
 
+  /// Only then is sight mutual. A portal between the same two cells elsewhere does not do: a line
+  /// that goes through the one need not go back through the other.
   bool all_portals_lead_back() const {
-    std::vector<std::pair<CellId, CellId>> ways;
     for (CellId cell = 0; cell < graph_.cell_count(); ++cell) {
       for (std::uint32_t id = graph_.first_opening(cell); id < graph_.end_opening(cell); ++id) {
-        ways.emplace_back(cell, portals_[id].to);
+        if (!leads_back(cell, graph_.opening(id))) return false;
       }
     }
-    std::ranges::sort(ways);
-    return std::ranges::all_of(ways, [&](const auto& way) {
-      return std::ranges::binary_search(ways, std::pair(way.second, way.first));
-    });
+    return true;
+  }
+
+  bool leads_back(CellId from, const Opening& way) const {
+    const std::span<const glm::dvec3> there = graph_.corners(way);
+    for (std::uint32_t id = graph_.first_opening(way.to); id < graph_.end_opening(way.to); ++id) {
+      const Opening& other = graph_.opening(id);
+      if (other.to == from && reversed(there, graph_.corners(other))) return true;
+    }
+    return false;
+  }
+
+  /// The same corners in the other order, whichever is first.
+  static bool reversed(std::span<const glm::dvec3> a, std::span<const glm::dvec3> b) {
+    const std::size_t count = a.size();
+    if (b.size() != count) return false;
+    for (std::size_t first = 0; first < count; ++first) {
+      std::size_t same = 0;
+      while (same < count &&
+             glm::distance(a[same], b[(first + count - same) % count]) <= same_corner_m) {
+        ++same;
+      }
+      if (same == count) return true;
+    }
+    return false;
   }
 
   const PortalGraph& graph_;

@@ -31,8 +31,8 @@ struct PvsLimits {
 };
 
 struct PvsTable {
-  /// A row for each cell; each cell sees itself. Symmetric if between all cells that have a portal
-  /// there is one each way.
+  /// A row for each cell; each cell sees itself. Symmetric if every portal has one with the same
+  /// corners that leads back.
   CompressedRows cells;
   std::uint64_t passes = 0;    // portals passed, from all sources
   std::uint64_t given_up = 0;  // sources

@@ -33,8 +33,7 @@ Scene rooms_with_holes_at(const std::vector<double>& at) {
   for (CellId room = 0; room <= at.size(); ++room) {
     scene.objects.push_back(
         {0, box_transform({4.0 * room + 2.0, -3.0, 0.0}, glm::dvec3(0.2)), room});
-    scene.cells[room].regions = {
-        rooms_of_tests::box_region({4.0 * room, -4, -9}, {4.0 * room + 4.0, 4, 9})};
+    scene.cells[room].regions = {box_region({4.0 * room, -4, -9}, {4.0 * room + 4.0, 4, 9})};
     scene.cells[room].bounds = scene.cells[room].regions[0].bounds;
     scene.cells[room].objects = {room};
     if (room == at.size()) break;
@@ -126,6 +125,30 @@ TEST(PvsFlow, SetsAreSymmetricAndDoNotDependOnThreads) {
   }
 }
 
+TEST(PvsFlow, SightIsMutualOnlyIfEachPortalLeadsBackWhereItLeads) {
+  // Straight on one sees the last room. The ways back are elsewhere in the walls, to one side and
+  // the other in turn, and from the last room none goes through all of them.
+  Scene scene = rooms_with_holes_at({0.0, 0.0, 0.0});
+  EXPECT_EQ(sets_of(scene, {})[0], (Set{0, 1, 2, 3}));
+  for (std::size_t i = 1; i < scene.portals.size(); i += 2) {
+    Portal& back = scene.portals[i];
+    for (glm::dvec3& corner : back.polygon) corner.z += back.to % 2 == 0 ? -8.0 : 8.0;
+    back = make_portal(back.polygon, back.from, back.to);
+  }
+  const auto sets = sets_of(scene, {});
+  EXPECT_EQ(sets[0], (Set{0, 1, 2, 3}));
+  EXPECT_EQ(sets[3], (Set{1, 2, 3}));
+}
+
+TEST(PvsFlow, APortalLeadsBackWhicheverOfItsCornersIsFirst) {
+  Scene scene = rooms_with_holes_at({0.0, 1.5, 0.99});
+  const auto sets = sets_of(scene, {});
+  for (std::size_t i = 1; i < scene.portals.size(); i += 2) {
+    std::ranges::rotate(scene.portals[i].polygon, scene.portals[i].polygon.begin() + 1);
+  }
+  EXPECT_EQ(sets_of(scene, {}), sets);
+}
+
 TEST(PvsFlow, ASourceThatIsGivenUpSeesAllThatTheSidesOfThePortalsAllow) {
   const Scene scene = rooms_with_holes_at({0.0, 1.5, 0.0, 1.5});
   std::uint64_t given_up = 0;
@@ -200,11 +223,30 @@ TEST(Pvs, WhereNoSetTellsAnythingTheFrustumDecides) {
   EXPECT_EQ(run.objects(first_room), (std::vector<ObjectId>{0, 1, 2}));
 }
 
+TEST(Pvs, WhatComesBackIsWhereTheSceneHasItAgain) {
+  const Scene scene = rooms_with_holes_at({0.0, 6.0, -6.0});
+  CullerRun run("portal.pvs", scene);
+  const Camera first_room = camera_at({1.0, -3.0, 0.0}, {9.0, -3.0, 0.0});
+  const glm::dmat4x3 home = scene.objects[3].transform;
+  const glm::dmat4x3 away = box_transform({6.0, -3.0, 0.0}, glm::dvec3(0.2));
+  run.update(first_room, {{3}, {away}, {}, {}});
+  EXPECT_EQ(run.objects(first_room), (std::vector<ObjectId>{0, 1, 2, 3}));
+  run.update(first_room, {{3}, {home}, {}, {}});
+  EXPECT_EQ(run.objects(first_room), (std::vector<ObjectId>{0, 1, 2}));
+  // What is in no cell has no home to come to.
+  Scene loose = scene;
+  loose.cells[3].objects.clear();
+  CullerRun other("portal.pvs", loose);
+  other.update(first_room, {{3}, {away}, {}, {}});
+  other.update(first_room, {{3}, {home}, {}, {}});
+  EXPECT_EQ(other.objects(first_room), (std::vector<ObjectId>{0, 1, 2, 3}));
+}
+
 TEST(Pvs, WhoeverStandsInTwoCellsSeesWhatBothSee) {
   Scene scene = rooms_with_holes_at({0.0, 1.5, 0.99});
   CullerRun apart("portal.pvs", scene);
   EXPECT_EQ(region_set(apart.culler(), 0, scene), (std::vector<ObjectId>{0, 1, 2}));
-  scene.cells[0].regions = {rooms_of_tests::box_region({0, -4, -9}, {5, 4, 9})};
+  scene.cells[0].regions = {box_region({0, -4, -9}, {5, 4, 9})};
   scene.cells[0].bounds = scene.cells[0].regions[0].bounds;
   CullerRun overlapping("portal.pvs", scene);
   EXPECT_EQ(region_set(overlapping.culler(), 0, scene), (std::vector<ObjectId>{0, 1, 2, 3}));
@@ -238,9 +280,45 @@ TEST(MapPvs, KeepsTheClustersThatTheWorldSaysAreSeen) {
   EXPECT_EQ(run.objects(camera_at({4.5, -3.0, 0.0}, {9.0, -3.0, 0.0})),
             (std::vector<ObjectId>{1, 2}))
       << "the first room lies behind";
-  const Camera in_the_wall = camera_at({-0.05, -3.0, 0.0}, {9.0, -3.0, 0.0});
+  const Camera in_the_wall = camera_at({-0.15, -3.0, 0.0}, {9.0, -3.0, 0.0});
   EXPECT_EQ(run.objects(in_the_wall), (std::vector<ObjectId>{0, 1, 2}));
+  const Camera eye_in_the_wall = camera_at({-0.05, -3.0, 0.0}, {9.0, -3.0, 0.0});
+  EXPECT_EQ(run.objects(eye_in_the_wall), (std::vector<ObjectId>{0, 1})) << "rays begin before it";
   EXPECT_EQ(region_set(run.culler(), 0, scene), (std::vector<ObjectId>{0, 1}));
+  EXPECT_EQ(region_set(run.culler(), 2, scene), (std::vector<ObjectId>{1, 2}));
+}
+
+/// At x = 3.9 and across the rooms, with a near plane 3 m away that reaches from x = 0.9 to 6.9.
+Camera with_a_wide_window() {
+  return {look_at({3.9, -3.0, -8.0}, {3.9, -3.0, 0.0}),
+          perspective_lens(degrees(90.0), 1.0, 3.0, 200.0)};
+}
+
+TEST(MapPvs, LooksFromAllClustersThatTheNearPlanesWindowReachesInto) {
+  const Scene scene = small_world({0b011, 0b111, 0b110});
+  CullerRun run("portal.map_pvs", scene);
+  EXPECT_EQ(run.objects(with_a_wide_window()), (std::vector<ObjectId>{0, 1, 2}));
+  const Scene apart = small_world({0b001, 0b010, 0b100});
+  CullerRun apart_run("portal.map_pvs", apart);
+  EXPECT_EQ(apart_run.objects(with_a_wide_window()), (std::vector<ObjectId>{0, 1}));
+}
+
+TEST(MapPvs, KeepsEverythingInTheFrustumWhereAWallIsInTheMiddleOfTheWindow) {
+  Scene scene = small_world({0b001, 0b010, 0b100});
+  auto world = std::make_shared<QuakeWorld>(*scene.quake);
+  world->planes.push_back({{1, 0, 0}, -4.2});  // solid from x = 4 on to here
+  world->nodes[1].front = 3;
+  world->nodes.push_back({3, 2, -1});
+  scene.quake = world;
+  CullerRun run("portal.map_pvs", scene);
+  EXPECT_EQ(run.objects(with_a_wide_window()), (std::vector<ObjectId>{0, 1, 2}));
+}
+
+TEST(MapPvs, PassesOverBitsBeyondTheLastCluster) {
+  const Scene scene = small_world({0b11111011, 0xff, 0b11110110});
+  CullerRun run("portal.map_pvs", scene);
+  EXPECT_EQ(run.objects(camera_at({1.0, -3.0, 0.0}, {9.0, -3.0, 0.0})),
+            (std::vector<ObjectId>{0, 1}));
   EXPECT_EQ(region_set(run.culler(), 2, scene), (std::vector<ObjectId>{1, 2}));
 }
 
