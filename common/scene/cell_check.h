@@ -13,8 +13,10 @@
 
 namespace vislab {
 
-/// Shallower overlaps and gaps are rounding, metres.
-inline constexpr double cell_tolerance_m = 1e-3;
+/// Shallower overlaps and gaps, and corners nearer to their portal's plane, are rounding, metres.
+/// Descriptions are read and checked with it. Walks through portals rely on it: what lies in a cell
+/// reaches no farther beyond its planes for them (region_slack_m in algorithms/portal).
+inline constexpr double cell_tolerance_m = 1e-4;
 
 /// One kind of fault: how often, and the first.
 struct CellFault {

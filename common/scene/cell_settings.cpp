@@ -1,17 +1,22 @@
 #include "common/scene/cell_settings.h"
 
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "common/scene/cell_check.h"
 #include "common/scene/convex_region.h"
 #include "common/scene/error.h"
 
 namespace vislab {
 namespace {
 
-constexpr double flat_m = 1e-3;  // corners may be so far from the portal's plane
+constexpr double repeated_m = 1e-6;  // corners nearer to each other are the same one
+/// The sine of a turn that counts as none: decimals that are rounded to six digits put a corner so
+/// far off a straight edge.
+constexpr double straight = 1e-6;
 
 std::vector<ConvexRegion> read_boxes(const Settings& table) {
   const std::vector<glm::dvec3> corners = table.points("boxes");
@@ -70,17 +75,51 @@ Cell read_cell(const Settings& table) {
   return cell;
 }
 
-void require_convex(const Settings& table, const Portal& portal) {
-  const ConvexPolygon& polygon = portal.polygon;
-  const std::size_t count = polygon.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const glm::dvec3 in = polygon[(i + 1) % count] - polygon[i];
-    const glm::dvec3 out = polygon[(i + 2) % count] - polygon[(i + 1) % count];
-    const bool flat = std::abs(portal.plane.signed_distance(polygon[i])) <= flat_m;
-    if (!flat || !(glm::dot(glm::cross(in, out), portal.plane.normal) >= 0.0)) {
-      throw InputError(table.where() +
-                       ": `corners` is wrong; it must be a convex polygon in one plane");
+/// Corners without those that repeat the one before.
+ConvexPolygon without_repeated(const std::vector<glm::dvec3>& corners) {
+  ConvexPolygon polygon;
+  for (const glm::dvec3& corner : corners) {
+    if (polygon.empty() || glm::distance(corner, polygon.back()) > repeated_m) {
+      polygon.push_back(corner);
     }
+  }
+  while (polygon.size() > 1 && glm::distance(polygon.back(), polygon.front()) <= repeated_m) {
+    polygon.pop_back();
+  }
+  return polygon;
+}
+
+/// Every corner turns left or goes straight on, and all of them together turn once round: a star
+/// turns left everywhere as well, but twice round.
+bool turns_once_round(const ConvexPolygon& polygon, const glm::dvec3& normal) {
+  const std::size_t count = polygon.size();
+  double turned = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::dvec3& here = polygon[(i + 1) % count];
+    const glm::dvec3 in = glm::normalize(here - polygon[i]);
+    const glm::dvec3 out = glm::normalize(polygon[(i + 2) % count] - here);
+    const double left = glm::dot(glm::cross(in, out), normal);
+    const double ahead = glm::dot(in, out);
+    const bool turns_back = ahead < 0.0 && left <= straight;
+    if (!(left >= -straight) || turns_back) return false;
+    turned += std::atan2(left, ahead);
+  }
+  return turned < 3.0 * std::numbers::pi;
+}
+
+void require_convex(const Settings& table, const Portal& portal) {
+  for (const glm::dvec3& corner : portal.polygon) {
+    const double off = std::abs(portal.plane.signed_distance(corner));
+    if (off <= cell_tolerance_m) continue;
+    throw InputError(table.where() +
+                     ": `corners` is wrong; it must be a polygon in one plane, but " +
+                     "a corner is " + std::to_string(off) + " m away from that of the others");
+  }
+  if (!turns_once_round(portal.polygon, portal.plane.normal)) {
+    throw InputError(
+        table.where() +
+        ": `corners` is wrong; it must be a convex polygon, whose outline turns left " +
+        "at each corner and once round in all");
   }
 }
 
@@ -88,12 +127,13 @@ void read_portal(const Settings& table, std::size_t cells, std::vector<Portal>& 
   const auto last = static_cast<std::int64_t>(cells) - 1;
   const auto from = static_cast<CellId>(table.whole("from", 0, last));
   const auto to = static_cast<CellId>(table.whole("to", 0, last));
-  const std::vector<glm::dvec3> corners = table.points("corners");
+  const ConvexPolygon corners = without_repeated(table.points("corners"));
   table.done();
   if (from == to) throw InputError(table.where() + ": `from` and `to` must be different cells");
   if (corners.size() < 3 || !(area(corners) > 0.0)) {
-    throw InputError(table.where() +
-                     ": `corners` is wrong; it must be a polygon of three corners or more");
+    throw InputError(
+        table.where() +
+        ": `corners` is wrong; it must be a polygon of three different corners or more");
   }
   portals.push_back(make_portal(corners, from, to));
   require_convex(table, portals.back());

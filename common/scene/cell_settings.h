@@ -5,8 +5,10 @@
 // and `inward` = a vector for each that points into the region. A cell's number is its place in the
 // list, from 0.
 //
-// A table `[[portals]]` has `from`, `to` and `corners` = [[x, y, z], …], convex, in one plane and
-// counter-clockwise seen from cell `from`. It is both ways: a second portal leads back.
+// A table `[[portals]]` has `from`, `to` and `corners` = [[x, y, z], …], convex, in one plane (to
+// cell_tolerance_m) and counter-clockwise seen from cell `from`. Corners on a straight edge are
+// allowed, and of corners that repeat the one before one stays. It is both ways: a second portal
+// leads back.
 #pragma once
 
 #include <vector>

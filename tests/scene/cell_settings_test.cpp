@@ -54,6 +54,71 @@ TEST(CellSettings, ReadBoxesPlanesAndPortalsBothWays) {
   EXPECT_EQ(check.overlaps.count + check.gaps.count + check.off.count, 0U);
 }
 
+std::string with_corners(const std::string& corners) {
+  return std::string(two_cells) + "[[portals]]\nfrom = 0\nto = 1\ncorners = " + corners + "\n";
+}
+
+TEST(CellSettings, TakeCornersOnStraightEdgesAndRepeatedOnes) {
+  const ScratchFolder folder;
+  // On an edge through thirds and tenths, where rounding makes corners turn right a little.
+  const Scene scene =
+      loaded(folder, with_corners("[[0, 0, -2], [0, 0, -2], [0, 0, 1], [0, 3, 1], [0, 2.1, 0.1],"
+                                  " [0, 1.9, -0.1], [0, 0.3, -1.7], [0, 0, -2]]"));
+  ASSERT_EQ(scene.portals.size(), 2U);
+  EXPECT_EQ(scene.portals[0].polygon.size(), 6U);
+  EXPECT_EQ(loaded(folder, with_corners("[[0, 0, 0], [0, 0, 2], [0, 3, 2], [0, 2.1, 1.4], "
+                                        "[0, 0.9, 0.6], [0, 0.3, 0.2]]"))
+                .portals[0]
+                .polygon.size(),
+            6U);
+  EXPECT_EQ(
+      loaded(folder, with_corners("[[0, 0, 0], [0, 0, 1], [0, 1, 1], [0, 0.333333, 0.333333]]"))
+          .portals.size(),
+      2U);
+}
+
+TEST(CellSettings, RefusePortalsThatAreNotConvexOrNotFlat) {
+  const ScratchFolder folder;
+  const auto message = [&](const std::string& corners) {
+    return test::input_error([&] { loaded(folder, with_corners(corners)); });
+  };
+  const std::string convex = "it must be a convex polygon, whose";
+  const std::string l_shape = "[[0, 0, -2], [0, 0, 2], [0, 1, 2], [0, 1, 0],";
+  EXPECT_TRUE(test::says(message(l_shape + "[0, 3, 0], [0, 3, -2]]"), convex));
+  EXPECT_TRUE(test::says(message(l_shape + "[0, 1, 0], [0, 3, 0], [0, 3, -2]]"), convex));
+  EXPECT_TRUE(test::says(message("[[0, 2.5, 0], [0, 0.38, 0.69], [0, 1.69, -1.11], "
+                                 "[0, 1.69, 1.11], [0, 0.38, -0.69]]"),
+                         convex))
+      << "a star";
+  EXPECT_TRUE(
+      test::says(message("[[0, 0, 0], [0, 0, 2], [0, 0, 1], [0, 1, 1], [0, 1, 0]]"), convex))
+      << "an edge that turns back";
+  EXPECT_TRUE(
+      test::says(message("[[0, 0, 0], [0, 0, 1], [0, 0, 1], [0, 0, 0]]"), "three different"));
+  EXPECT_TRUE(
+      test::says(message("[[0, 0, -1], [0, 0, 1], [0, 2, 1], [0.002, 2, -1]]"), "one plane"));
+  EXPECT_NO_THROW(
+      loaded(folder, with_corners("[[0, 0, -1], [0, 0, 1], [0, 2, 1], [0.0001, 2, -1]]")));
+}
+
+TEST(CellSettings, AreCheckedAsExactlyAsWalksNeed) {
+  const ScratchFolder folder;
+  const Scene scene = loaded(folder, std::string(two_cells) + portal);
+  const auto off = [&](double x) {
+    Scene moved = scene;
+    for (Portal& each : moved.portals) {
+      for (glm::dvec3& corner : each.polygon) corner.x += x;
+      each = make_portal(each.polygon, each.from, each.to);
+    }
+    return check_cells(moved).off.count;
+  };
+  for (const double sign : {1.0, -1.0}) {
+    EXPECT_EQ(off(sign * 5e-5), 0U);
+    EXPECT_EQ(off(sign * 2e-4), 2U) << "either way";
+    EXPECT_EQ(off(sign * 8e-4), 2U);
+  }
+}
+
 TEST(CellSettings, RefuseWhatIsNoCellOrNoPortal) {
   const ScratchFolder folder;
   const auto refused = [&](const std::string& text) {
@@ -69,13 +134,11 @@ TEST(CellSettings, RefuseWhatIsNoCellOrNoPortal) {
                          "no region"));
   EXPECT_TRUE(test::says(refused(head + "[[cells]]\nthrough = [[0, 0, 0]]\ninward = [[0, 0, 0]]\n"),
                          "zero"));
-  const auto with_corners = [&](const std::string& corners) {
-    return refused(cells + "[[portals]]\nfrom = 0\nto = 1\ncorners = " + corners + "\n");
-  };
-  EXPECT_TRUE(test::says(with_corners("[[0, 0, 0], [0, 1, 0]]"), "three corners"));
-  EXPECT_TRUE(test::says(with_corners("[[0, 0, 0], [0, 0, 1], [0, 2, 1], [1, 2, 0]]"), "convex"));
-  EXPECT_TRUE(
-      test::says(with_corners("[[0, 0, -1], [0, 0.1, 0], [0, 0, 1], [0, 2, 0]]"), "convex"));
+  EXPECT_TRUE(test::says(refused(with_corners("[[0, 0, 0], [0, 1, 0]]")), "three different"));
+  EXPECT_TRUE(test::says(refused(with_corners("[[0, 0, 0], [0, 0, 1], [0, 2, 1], [1, 2, 0]]")),
+                         "one plane"));
+  EXPECT_TRUE(test::says(refused(with_corners("[[0, 0, -1], [0, 0.1, 0], [0, 0, 1], [0, 2, 0]]")),
+                         "convex"));
   EXPECT_TRUE(test::says(refused(cells + "[[portals]]\nfrom = 0\nto = 0\ncorners = [[0, 0, 0]]\n"),
                          "different"));
   EXPECT_TRUE(test::says(refused(cells + "[[portals]]\nfrom = 0\nto = 2\ncorners = [[0, 0, 0]]\n"),
