@@ -18,6 +18,9 @@ namespace vislab {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+/// What surfaces and edges of portals may miss the cells' boundary by. More than cells and portals
+/// may among each other: game worlds round corners after their tree is made.
+constexpr double surface_tolerance_m = 1e-3;
 constexpr double aside_m =
     0.01;  // of starting points from their region's planes, if it is so thick
 
@@ -79,6 +82,9 @@ class LeakFinder {
   explicit LeakFinder(const Scene& scene)
       : scene_(scene), state_(scene), rays_(scene), portals_(scene.cells.size()) {
     rays_.follow(state_.view());
+    for (ObjectId object = 0; object < scene.object_count(); ++object) {
+      any_closed_ = any_closed_ || scene.mesh_of(object).closed;
+    }
     for (const Portal& portal : scene.portals) portals_[portal.from].push_back(&portal);
   }
 
@@ -88,15 +94,30 @@ class LeakFinder {
     if (hit.triangle == none_id) return std::nullopt;
     const ConvexRegion* last = nullptr;
     const double way = way_out(scene_.cells[cell], region, line, last);
-    if (hit.distance <= way + cell_tolerance_m ||
-        contains(*last, line.at(hit.distance), cell_tolerance_m)) {
+    if (hit.distance <= way + surface_tolerance_m ||
+        contains(*last, line.at(hit.distance), surface_tolerance_m)) {
       return std::nullopt;
     }
     for (const Portal* portal : portals_[cell]) {
       if (passes(*portal, line, way)) return std::nullopt;
     }
-    if (starts_in_closed_object(line)) return std::nullopt;
     return line.at(way);
+  }
+
+  /// Is the first that the line meets of some closed object its inside?
+  bool starts_in_closed_object(const Line& line) const {
+    if (!any_closed_) return false;
+    std::vector<ObjectId> entered;
+    for (Hit hit = next_hit(line, 0.0); hit.triangle != none_id;
+         hit = next_hit(line, 1e-6 + hit.distance * (1.0 + 1e-6))) {
+      const ObjectId object = scene_.object_of(hit.triangle);
+      if (!scene_.mesh_of(object).closed || std::ranges::find(entered, object) != entered.end()) {
+        continue;
+      }
+      if (from_inside(object, hit.triangle, line)) return true;
+      entered.push_back(object);
+    }
+    return false;
   }
 
  private:
@@ -105,13 +126,13 @@ class LeakFinder {
     const double approach = -glm::dot(portal.plane.normal, line.towards);
     if (!(approach > 0.0)) return false;
     const double distance = portal.plane.signed_distance(line.from) / approach;
-    if (distance < 0.0 || (distance - way) * approach > cell_tolerance_m) return false;
+    if (distance < 0.0 || (distance - way) * approach > surface_tolerance_m) return false;
     const glm::dvec3 place = line.at(distance);
     for (std::size_t i = 0; i < portal.polygon.size(); ++i) {
       const glm::dvec3& a = portal.polygon[i];
       const glm::dvec3 edge = portal.polygon[(i + 1) % portal.polygon.size()] - a;
       const glm::dvec3 inward = glm::cross(portal.plane.normal, edge);
-      if (glm::dot(inward, place - a) < -cell_tolerance_m * glm::length(edge)) return false;
+      if (glm::dot(inward, place - a) < -surface_tolerance_m * glm::length(edge)) return false;
     }
     return true;
   }
@@ -143,21 +164,6 @@ class LeakFinder {
             double{ray.ray.tfar}};
   }
 
-  /// Is the first that the line meets of some closed object its inside?
-  bool starts_in_closed_object(const Line& line) const {
-    std::vector<ObjectId> entered;
-    for (Hit hit = next_hit(line, 0.0); hit.triangle != none_id;
-         hit = next_hit(line, 1e-6 + hit.distance * (1.0 + 1e-6))) {
-      const ObjectId object = scene_.object_of(hit.triangle);
-      if (!scene_.mesh_of(object).closed || std::ranges::find(entered, object) != entered.end()) {
-        continue;
-      }
-      if (from_inside(object, hit.triangle, line)) return true;
-      entered.push_back(object);
-    }
-    return false;
-  }
-
   bool from_inside(ObjectId object, TriangleId triangle, const Line& line) const {
     const std::array<glm::dvec3, 3> corners = rays_.triangle(triangle);
     const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
@@ -168,6 +174,7 @@ class LeakFinder {
   const Scene& scene_;
   SceneState state_;
   RayScene rays_;
+  bool any_closed_ = false;
   std::vector<std::vector<const Portal*>> portals_;  // by cell they lead out of
 };
 
@@ -180,18 +187,31 @@ CellLeaks find_cell_leaks(const Scene& scene, std::size_t rays_per_cell, std::ui
   Random random(seed);
   for (CellId cell = 0; cell < scene.cells.size(); ++cell) {
     const std::vector<ConvexRegion>& regions = scene.cells[cell].regions;
-    if (regions.empty()) continue;
+    if (regions.empty()) {
+      if (found.unchecked_cells++ == 0) found.first_unchecked = cell;
+      continue;
+    }
     const std::size_t before = found.leaks.count;
+    std::size_t looks = 0;
+    std::size_t inside_objects = 0;
     for (std::size_t i = 0; i < rays_per_cell; ++i) {
       const ConvexRegion& region = regions[i % regions.size()];
       const std::optional<glm::dvec3> start = point_in(region, random);
       const Line line{start.value_or(glm::dvec3(0.0)), random_direction(random)};
       if (!start) continue;
-      ++found.rays;
+      if (finder.starts_in_closed_object(line)) {
+        ++inside_objects;
+        continue;
+      }
+      ++looks;
       const std::optional<glm::dvec3> place = finder.leak(cell, region, line);
       if (place && found.leaks.count++ == 0) found.leaks = {1, cell, none_id, *place};
     }
     if (found.leaks.count > before) ++found.leaking_cells;
+    found.rays += looks;
+    found.rays_inside_objects += inside_objects;
+    if (looks > inside_objects) continue;
+    if (found.unchecked_cells++ == 0) found.first_unchecked = cell;
   }
   return found;
 }

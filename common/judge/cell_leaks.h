@@ -3,10 +3,12 @@
 //
 // Idea: rays from random points of each cell in random directions. A ray that leaves its cell
 //   without having met a surface must pass one of the cell's portals.
-//   Points inside of closed objects are no places to look from.
+//   Points inside of closed objects are no places to look from; a cell that lies in one, as in a
+//   closed hull, is not checked, and is counted as such.
 // Guarantee: every leak that is counted is one, but for surfaces and portals that miss the cell's
-//   boundary by less than the tolerance. Small leaks are found by chance.
-// Cost: one traced ray each, and the cell's planes and portals.
+//   boundary by less than a millimetre. Small leaks are found by chance.
+// Cost: one traced ray each, the cell's planes and portals, and what else the ray would hit if the
+//   scene has closed meshes.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +20,12 @@ namespace vislab {
 
 struct CellLeaks {
   std::size_t rays = 0;
-  CellFault leaks;  // rays; the place is where the first one leaves `cell`
+  std::size_t rays_inside_objects = 0;  // not looked along, and not among `rays`
+  CellFault leaks;                      // rays; the place is where the first one leaves `cell`
   std::size_t leaking_cells = 0;
+  // Most of whose rays begin inside of objects, and those from which there is none.
+  std::size_t unchecked_cells = 0;
+  CellId first_unchecked = none_id;
 };
 
 /// `rays_per_cell` rays from every cell that has a region; the scene as built. A ray that leaves a

@@ -123,6 +123,32 @@ TEST(CellLeaks, AreFoundWhereAWallIsMissing) {
   EXPECT_LT(leaks.leaks.place.x, -2.4);
 }
 
+TEST(CellLeaks, AreUnknownOfCellsInsideOfAClosedHull) {
+  Scene open = make_rooms(line_of_three());
+  const CellLeaks before = find_cell_leaks(finished(open), rays, 1);
+  EXPECT_EQ(before.unchecked_cells, 0U);
+  EXPECT_EQ(before.rays + before.rays_inside_objects, 3 * rays);
+  EXPECT_LT(before.rays_inside_objects, rays / 4) << "in the boxes that stand about";
+  // All of it in one closed box, and no portal left: everything leaks, but nobody looks.
+  open.portals.clear();
+  EXPECT_EQ(find_cell_leaks(finished(open), rays, 1).leaking_cells, 3U);
+  open.objects.push_back({static_cast<MeshId>(open.meshes.size()),
+                          box_transform({0.0, 0.0, 0.0}, glm::dvec3(100.0)), none_id});
+  open.meshes.push_back(cube_mesh());
+  const CellLeaks hidden = find_cell_leaks(finished(open), rays, 1);
+  EXPECT_EQ(hidden.leaks.count, 0U);
+  EXPECT_EQ(hidden.rays, 0U);
+  EXPECT_EQ(hidden.rays_inside_objects, 3 * rays);
+  EXPECT_EQ(hidden.unchecked_cells, 3U);
+  EXPECT_EQ(hidden.first_unchecked, 0U);
+  // A box around the first room only, which begins at z = 0.
+  open.objects.back().transform = box_transform({0.0, 0.0, 100.0}, glm::dvec3(100.0));
+  const CellLeaks partly = find_cell_leaks(finished(open), rays, 1);
+  EXPECT_EQ(partly.leaking_cells, 2U);
+  EXPECT_EQ(partly.unchecked_cells, 1U);
+  EXPECT_EQ(partly.first_unchecked, 0U);
+}
+
 TEST(CellLeaks, OfTheSameSeedAreTheSame) {
   RoomsParameters line = line_of_three();
   line.crack_m = 0.2;
