@@ -1,5 +1,6 @@
 #include "report/cell_section.h"
 
+#include <map>
 #include <set>
 
 #include "common/scene/error.h"
@@ -66,13 +67,14 @@ void add_cell_fields(const ReportInput& input, const std::filesystem::path& fold
   auto& rows = fields.lists["cell_rows"];
   auto& plans = fields.lists["plans"];
   auto& missing = fields.lists["plans_missing"];
-  std::set<std::string> drawn;  // scenes
+  std::set<std::string> drawn;              // scenes
+  std::map<std::string, Fields> not_drawn;  // scenes: the first reason
   for (const BlockSummary& block : input.blocks) {
     for (const CellSummary& cell : block.cells) {
       if (cell.judged && was_in_a_cell(cell)) rows.push_back(row_of(block, cell));
     }
     const CellSummary* const walk = best_walk(block);
-    if (walk == nullptr || !input.plan || !drawn.insert(block.scene_hash).second) continue;
+    if (walk == nullptr || !input.plan || drawn.contains(block.scene_hash)) continue;
     const std::string file = "plan-" + std::to_string(plans.size() + 1) + ".png";
     Fields plan;
     plan.values["scene"] = markdown_text(block.scene);
@@ -80,11 +82,18 @@ void add_cell_fields(const ReportInput& input, const std::filesystem::path& fold
       plan.values["place"] = markdown_text(input.plan(block, *walk, folder / file));
       plan.values["file"] = file;
       plans.push_back(std::move(plan));
+      drawn.insert(block.scene_hash);
     } catch (const InputError& error) {
       // Results outlive the scenes they were measured on; the report is whole without pictures.
+      // Another block of the scene, with its own path and device, may still give one.
       plan.values["reason"] = markdown_text(error.what());
-      missing.push_back(std::move(plan));
+      not_drawn.emplace(block.scene_hash, std::move(plan));
     }
+  }
+  for (const BlockSummary& block : input.blocks) {
+    const auto found = not_drawn.find(block.scene_hash);
+    if (found == not_drawn.end() || !drawn.insert(block.scene_hash).second) continue;
+    missing.push_back(std::move(found->second));
   }
   fields.flag("has_cells", !rows.empty());
 }

@@ -53,6 +53,20 @@ TEST(CellSection, SaysWhyThereIsNoPlan) {
   EXPECT_EQ(fields.lists["plans_missing"][0].values["reason"], "gone");
 }
 
+TEST(CellSection, TriesTheOtherBlocksOfASceneThatCouldNotBeDrawn) {
+  ReportInput input = houses();
+  input.blocks[1].path = "another path";
+  input.plan = [](const BlockSummary& block, const CellSummary&, const std::filesystem::path&) {
+    if (block.path != "another path") throw InputError("gone");
+    return std::string("drawn");
+  };
+  Fields fields;
+  add_cell_fields(input, ".", fields);
+  ASSERT_EQ(fields.lists["plans"].size(), 1U);
+  EXPECT_EQ(fields.lists["plans"][0].values["place"], "drawn");
+  EXPECT_TRUE(fields.lists["plans_missing"].empty());
+}
+
 TEST(CellSection, IsEmptyWhereNobodyWasEverInACell) {
   ReportInput input;
   BlockSummary block = fabricated_block("plant");
