@@ -91,8 +91,11 @@ class RegionJudge {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The cells that a viewer can get to: in a Quake III world those that portals join with a place
-/// where players stand; all cells of other scenes. Ascending.
+/// The cells that a viewer may be in: in a Quake III world those that portals join with a place
+/// where players stand; all cells of other scenes. Ascending. More than a player's eye gets to:
+/// what is high above floors is open as well. From there one may see through solid leaves that are
+/// not drawn, which neither portals nor a map's own sets allow for; the judge leaves rays that do
+/// so out, as strays, images do not.
 std::vector<CellId> reachable_cells(const Scene& scene);
 
 /// The set of a cell, ascending; none if the culler knows of no sets.

@@ -54,7 +54,10 @@ struct QuakeReport {
   std::size_t leaves_open_to_outside = 0;
   std::size_t blind_clusters = 0;      // that do not see themselves
   std::size_t unseen_neighbours = 0;   // openings between clusters that do not see each other
-  std::size_t see_through_leaves = 0;  // solid, but bare on several sides (see quake_gaps.h)
+  // Solid, but bare on several sides (see quake_gaps.h). Fewer than the places where one sees
+  // through what is solid: sight that goes in at one solid leaf and out at another is found by rays
+  // only (judge/cell_leaks.h).
+  std::size_t see_through_leaves = 0;
 };
 
 struct QuakeWorld {

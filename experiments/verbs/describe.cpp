@@ -76,7 +76,7 @@ void describe_culler(const Registry& cullers, const std::string& chain, bool jso
 
 void add_quake_report(const QuakeReport& report, Facts& facts) {
   facts.add("leaves_open_to_outside", std::uint64_t{report.leaves_open_to_outside});
-  facts.add("see_through_leaves", std::uint64_t{report.see_through_leaves});
+  facts.add("solid_leaves_bare_on_several_sides", std::uint64_t{report.see_through_leaves});
   facts.add("blind_clusters", std::uint64_t{report.blind_clusters});
   facts.add("unseen_neighbours", std::uint64_t{report.unseen_neighbours});
 }
