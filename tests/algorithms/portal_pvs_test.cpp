@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <memory>
 
 #include "algorithms/portal/pvs_flow.h"
@@ -140,13 +141,51 @@ TEST(PvsFlow, SightIsMutualOnlyIfEachPortalLeadsBackWhereItLeads) {
   EXPECT_EQ(sets[3], (Set{1, 2, 3}));
 }
 
+/// Six rooms with rectangles of all sizes and rolls between them, such that what is found from one
+/// end of the row is not what is found from the other; and two rooms apart from them, of which one
+/// opens into the other.
+Scene rooms_seen_otherwise_from_either_end() {
+  Scene scene;
+  scene.cells.resize(8);
+  const auto set_box = [&](CellId cell, const glm::dvec3& min, const glm::dvec3& max) {
+    scene.cells[cell].regions = {rooms_of_tests::box_region(min, max)};
+    scene.cells[cell].bounds = scene.cells[cell].regions[0].bounds;
+  };
+  Random random(41);
+  for (CellId room = 0; room < 6; ++room) {
+    const double x = 4.0 * room;
+    set_box(room, {x, -9, -9}, {x + 4.0, 9, 9});
+    if (room == 5) break;
+    const double roll = random.uniform(0.0, 1.57);
+    const double y = random.uniform(-1.0, 1.0);
+    const double z = random.uniform(-1.0, 1.0);
+    const double half_width = random.uniform(0.2, 0.8);
+    const double half_height = random.uniform(0.05, 0.8);
+    const glm::dvec3 middle(x + 4.0, y, z);
+    const glm::dvec3 u = half_width * glm::dvec3(0.0, -std::sin(roll), std::cos(roll));
+    const glm::dvec3 v = half_height * glm::dvec3(0.0, std::cos(roll), std::sin(roll));
+    std::vector<glm::dvec3> hole{middle - v - u, middle - v + u, middle + v + u, middle + v - u};
+    scene.portals.push_back(make_portal(hole, room, room + 1));
+    std::ranges::reverse(hole);
+    scene.portals.push_back(make_portal(hole, room + 1, room));
+  }
+  set_box(6, {0, 20, 0}, {4, 22, 2});
+  set_box(7, {4, 20, 0}, {8, 22, 2});
+  scene.portals.push_back(make_portal({{4, 20, 0}, {4, 20, 1}, {4, 21, 1}, {4, 21, 0}}, 6, 7));
+  return scene;
+}
+
 TEST(PvsFlow, APortalLeadsBackWhicheverOfItsCornersIsFirst) {
-  Scene scene = rooms_with_holes_at({0.0, 1.5, 0.99});
-  const auto sets = sets_of(scene, {});
+  Scene scene = rooms_seen_otherwise_from_either_end();
+  auto one_way = sets_of(scene, {});
+  scene.portals.pop_back();
+  const auto mutual = sets_of(scene, {});
+  for (const CellId apart : {6, 7}) one_way[apart] = mutual[apart];
+  ASSERT_NE(mutual, one_way) << "rooms in which it does not matter are no test";
   for (std::size_t i = 1; i < scene.portals.size(); i += 2) {
     std::ranges::rotate(scene.portals[i].polygon, scene.portals[i].polygon.begin() + 1);
   }
-  EXPECT_EQ(sets_of(scene, {}), sets);
+  EXPECT_EQ(sets_of(scene, {}), mutual);
 }
 
 TEST(PvsFlow, ASourceThatIsGivenUpSeesAllThatTheSidesOfThePortalsAllow) {

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
+#include <utility>
 
 #include "common/scene/cell_check.h"
 #include "tests/scene/test_files.h"
@@ -99,6 +101,24 @@ TEST(CellSettings, RefusePortalsThatAreNotConvexOrNotFlat) {
       test::says(message("[[0, 0, -1], [0, 0, 1], [0, 2, 1], [0.002, 2, -1]]"), "one plane"));
   EXPECT_NO_THROW(
       loaded(folder, with_corners("[[0, 0, -1], [0, 0, 1], [0, 2, 1], [0.0001, 2, -1]]")));
+}
+
+TEST(CellSettings, RefuseEdgesThatTurnBackWhicheverWayRoundingTurnsThem) {
+  const ScratchFolder folder;
+  for (int i = 0; i < 24; ++i) {
+    const glm::dvec3 along(0.0, std::sin(0.3 * i), std::cos(0.3 * i));
+    const glm::dvec3 aside(0.0, along.z, -along.y);  // to the left, seen from smaller x
+    std::string corners;
+    // There, too far, back, and on again.
+    for (const auto& [u, v] : {std::pair(0, 0), {3, 0}, {1, 0}, {2, 0}, {2, 2}, {0, 2}}) {
+      const glm::dvec3 p = along * (0.1 * u) + aside * (0.1 * v);
+      corners += (corners.empty() ? "[0, " : ", [0, ") + std::to_string(p.y) + ", " +
+                 std::to_string(p.z) + "]";
+    }
+    EXPECT_TRUE(test::says(
+        test::input_error([&] { loaded(folder, with_corners("[" + corners + "]")); }), "convex"))
+        << i;
+  }
 }
 
 TEST(CellSettings, AreCheckedAsExactlyAsWalksNeed) {
