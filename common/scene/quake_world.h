@@ -52,8 +52,8 @@ struct QuakeReport {
   // Not solid, and reaching to where the world ends: a crack in its hull, unless nothing can be
   // seen from there.
   std::size_t leaves_open_to_outside = 0;
-  std::size_t blind_clusters = 0;      // that do not see themselves
-  std::size_t unseen_neighbours = 0;   // openings between clusters that do not see each other
+  std::size_t blind_clusters = 0;     // that do not see themselves
+  std::size_t unseen_neighbours = 0;  // openings between clusters that do not see each other
   // Solid, but bare on several sides (see quake_gaps.h). Fewer than the places where one sees
   // through what is solid: sight that goes in at one solid leaf and out at another is found by rays
   // only (judge/cell_leaks.h).
