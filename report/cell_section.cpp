@@ -2,6 +2,7 @@
 
 #include <map>
 #include <set>
+#include <utility>
 
 #include "common/scene/error.h"
 #include "report/format.h"
@@ -46,12 +47,30 @@ Fields row_of(const BlockSummary& block, const CellSummary& cell) {
   return row;
 }
 
-/// Walks through portals and does it right; with the fewest triangles, the first of equals. Null if
-/// there is none.
+/// What the sets of a scene's cells are worth, whatever path was walked.
+Fields set_row_of(const BlockSummary& block, const CellSummary& cell) {
+  Fields row;
+  row.values["scene"] = markdown_text(block.scene);
+  row.values["method"] = markdown_code(cell.culler);
+  row.values["cells"] = format_count(cell.regions->cells);
+  row.values["rays"] = format_count(cell.regions->rays);
+  row.values["misses"] = format_count(cell.regions->misses);
+  row.values["over"] = format_number(cell.metric("region_over"));
+  row.values["over_points"] = format_number(cell.metric("region_over_points"));
+  row.values["set_bytes"] = counter_text(cell, "set_bytes");
+  row.values["raw_bytes"] = counter_text(cell, "set_raw_bytes");
+  row.values["bytes"] = format_count(cell.bytes);
+  row.values["build_ms"] = format_rounded(cell.build_ms);
+  return row;
+}
+
+/// Walks through portals and does it right, not by luck alone as a negative control may; with the
+/// fewest triangles, the first of equals. Null if there is none.
 const CellSummary* best_walk(const BlockSummary& block) {
   const CellSummary* best = nullptr;
   for (const CellSummary& cell : block.cells) {
-    if (!was_in_a_cell(cell) || counter_of(cell, visited) == 0.0 || !is_free_of_errors(cell) ||
+    if (cell.guarantee == Guarantee::erroneous || !was_in_a_cell(cell) ||
+        counter_of(cell, visited) == 0.0 || !is_free_of_errors(cell) ||
         cell.granularity != Granularity::object || cell.canonical.find('>') != std::string::npos) {
       continue;
     }
@@ -67,11 +86,16 @@ void add_cell_fields(const ReportInput& input, const std::filesystem::path& fold
   auto& rows = fields.lists["cell_rows"];
   auto& plans = fields.lists["plans"];
   auto& missing = fields.lists["plans_missing"];
-  std::set<std::string> drawn;              // scenes
-  std::map<std::string, Fields> not_drawn;  // scenes: the first reason
+  auto& set_rows = fields.lists["set_rows"];
+  std::set<std::string> drawn;                             // scenes
+  std::map<std::string, Fields> not_drawn;                 // scenes: the first reason
+  std::set<std::pair<std::string, std::string>> has_sets;  // scenes and methods
   for (const BlockSummary& block : input.blocks) {
     for (const CellSummary& cell : block.cells) {
       if (cell.judged && was_in_a_cell(cell)) rows.push_back(row_of(block, cell));
+      if (cell.regions && has_sets.emplace(block.scene_hash, cell.canonical).second) {
+        set_rows.push_back(set_row_of(block, cell));
+      }
     }
     const CellSummary* const walk = best_walk(block);
     if (walk == nullptr || !input.plan || drawn.contains(block.scene_hash)) continue;
@@ -95,7 +119,9 @@ void add_cell_fields(const ReportInput& input, const std::filesystem::path& fold
     if (found == not_drawn.end() || !drawn.insert(block.scene_hash).second) continue;
     missing.push_back(std::move(found->second));
   }
-  fields.flag("has_cells", !rows.empty());
+  fields.flag("has_cells", !rows.empty() || !set_rows.empty());
+  fields.flag("has_walks", !rows.empty());
+  fields.flag("has_sets", !set_rows.empty());
 }
 
 }  // namespace vislab

@@ -141,11 +141,17 @@ class MapPvs : public PvsCuller {
   }
 
   std::size_t bytes_of_sets() const override {
-    std::size_t total = waiting_.capacity() * sizeof(Waiting);
+    // The map's own rows lie in the scene, but are the sets, and serve no other method.
+    std::size_t total = set_sizes().stored + waiting_.capacity() * sizeof(Waiting);
     for (const auto& clusters : clusters_of_cell_) {
       total += sizeof(clusters) + clusters.capacity() * sizeof(std::int32_t);
     }
     return total;
+  }
+
+  SetSizes set_sizes() const override {
+    if (world_ == nullptr) return {};
+    return {world_->visible.size(), raw_bytes(world_->cluster_count)};
   }
 
  private:

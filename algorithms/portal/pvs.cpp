@@ -94,6 +94,11 @@ class Pvs : public PvsCuller {
            overlaps_.capacity() * sizeof(overlaps_[0]);
   }
 
+  SetSizes set_sizes() const override {
+    const std::size_t rows = table_.cells.row_count();
+    return {rows == 0 ? 0 : table_.cells.bytes(), raw_bytes(rows)};
+  }
+
  private:
   /// Whoever stands in two cells sees what both see. (A camera is found in both anyway.)
   void find_overlaps(const Scene& scene) {

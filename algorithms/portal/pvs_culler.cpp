@@ -61,6 +61,9 @@ void PvsCuller::update(const Frame& frame, const Changes& changes) {
     is_free_[object] = away || !lies_in_a_place_[object] ? 1 : 0;
   }
   any_moved_ = any_moved_ || !changes.moved.empty();
+  const SetSizes sizes = set_sizes();
+  set_bytes_ += sizes.stored;
+  set_raw_bytes_ += sizes.raw;
 }
 
 /// Marks the objects of the places seen. Most frames see what the one before saw.
@@ -120,7 +123,9 @@ std::size_t PvsCuller::bytes() const {
 Counters PvsCuller::counters() const {
   return {{"objects_tested", objects_tested_},
           {"sets_changed", sets_changed_},
-          {"frames_outside", frames_outside_}};
+          {"frames_outside", frames_outside_},
+          {"set_bytes", set_bytes_},
+          {"set_raw_bytes", set_raw_bytes_}};
 }
 
 }  // namespace vislab::portal_culling

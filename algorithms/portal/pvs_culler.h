@@ -46,6 +46,14 @@ class PvsCuller : public ICuller {
   /// Adds the places seen from anywhere in the cell; false if nothing is known of it.
   virtual bool add_seen_from(CellId cell, std::span<std::uint64_t> places) const = 0;
   virtual std::size_t bytes_of_sets() const = 0;
+  /// Which place sees which, without all that is held beside it: as it is stored, and with a bit
+  /// for each pair of places, so that sets of different makers can be compared.
+  struct SetSizes {
+    std::size_t stored = 0, raw = 0;  // bytes
+  };
+  virtual SetSizes set_sizes() const = 0;
+  /// Of a row of whole bytes for each place.
+  static std::size_t raw_bytes(std::size_t places) { return places * ((places + 7) / 8); }
 
  private:
   void mark();
@@ -63,6 +71,9 @@ class PvsCuller : public ICuller {
   std::uint64_t objects_tested_ = 0;
   std::uint64_t sets_changed_ = 0;
   std::uint64_t frames_outside_ = 0;
+  // Counters are told by how much they grow in a frame, so the sizes are added in each update().
+  std::uint64_t set_bytes_ = 0;
+  std::uint64_t set_raw_bytes_ = 0;
 };
 
 }  // namespace vislab::portal_culling

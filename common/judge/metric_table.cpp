@@ -36,6 +36,9 @@ std::span<const Metric> metrics() {
       Metric{"region_over", "ratio", lower,
              "objects in the cells' sets that no ray from the cell hits / objects that are hit; an "
              "upper bound"},
+      Metric{"region_over_points", "ratio", lower,
+             "objects in the cells' sets that no ray from a viewpoint hits / objects that are hit, "
+             "summed over viewpoints; what a set for a whole cell costs"},
       Metric{"recall", "ratio", higher,
              "culled / cullable by a perfect method of its kind: back faces, what lies outside the "
              "frustum, or (all other methods) what is not visible"},

@@ -57,7 +57,8 @@ struct RegionVerdict {
 
   /// region_over: unseen / seen.
   double over() const;
-  /// The same against what is seen from a single viewpoint: what a set for a whole cell costs.
+  /// region_over_points: the same against what is seen from a single viewpoint, which is what a set
+  /// for a whole cell costs.
   double over_points() const;
   /// At most 16 rays that are missed: where they begin and what they hit.
   struct Witness {

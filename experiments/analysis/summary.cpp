@@ -352,6 +352,7 @@ double CellSummary::metric(const std::string& name) const {
   if (name == "under") return under;
   if (name == "region_misses") return regions ? static_cast<double>(regions->misses) : nan;
   if (name == "region_over") return regions ? regions->over() : nan;
+  if (name == "region_over_points") return regions ? regions->over_points() : nan;
   if (name == "recall") return recall;
   if (name == "flicker") return judged ? flicker : nan;
   if (name == "pop") return if_judged(pop_px_frames);

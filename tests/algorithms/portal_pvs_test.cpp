@@ -374,6 +374,37 @@ TEST(MapPvs, RefusesSetsThatDoNotFitTheirWorld) {
   EXPECT_THROW(CullerRun("portal.map_pvs", scene), InputError);
 }
 
+/// What counters say of the sizes of sets in a frame.
+std::pair<std::uint64_t, std::uint64_t> set_sizes(const std::string& spec, const Scene& scene) {
+  CullerRun run(spec, scene);
+  const Camera camera = camera_at({1.0, -3.0, 0.0}, {9.0, -3.0, 0.0});
+  run.update(camera, {});
+  const std::pair<std::uint64_t, std::uint64_t> first{run.counter("set_bytes"),
+                                                      run.counter("set_raw_bytes")};
+  run.objects(camera);
+  run.update(camera, {});
+  EXPECT_EQ(run.counter("set_bytes"), 2 * first.first) << "once a frame";
+  EXPECT_EQ(run.counter("set_raw_bytes"), 2 * first.second);
+  EXPECT_GE(run.culler().bytes(), first.first) << "the sets are memory of the method's";
+  return first;
+}
+
+TEST(MapPvs, ItsSetsHaveTheSizeOfTheMapsRows) {
+  // Three clusters in a byte each.
+  EXPECT_EQ(set_sizes("portal.map_pvs", small_world({0b011, 0b111, 0b110})),
+            (std::pair<std::uint64_t, std::uint64_t>{3, 3}));
+}
+
+TEST(Pvs, CompressedRowsAreComparedWithABitForEachPairOfCells) {
+  // 201 rooms, of which each sees few others: most bytes of a row are zero.
+  std::vector<double> holes(200);
+  for (std::size_t i = 0; i < holes.size(); ++i) holes[i] = i % 2 == 0 ? 6.0 : -6.0;
+  const auto [stored, raw] = set_sizes("portal.pvs", rooms_with_holes_at(holes));
+  EXPECT_EQ(raw, 201U * 26U);
+  EXPECT_LT(stored, raw);
+  EXPECT_GT(stored, 201U * sizeof(std::uint32_t)) << "where each row begins is a part of it";
+}
+
 TEST(MapPvs, InScenesThatAreNoQuakeWorldTheFrustumDecides) {
   const Scene scene = rooms_with_holes_at({0.0, 6.0, -6.0});
   CullerRun run("portal.map_pvs", scene);

@@ -42,6 +42,51 @@ TEST(CellSection, ListsMethodsThatKnowOfCellsAndPlansTheBestThatIsRight) {
   EXPECT_EQ(fields.lists["plans"].size(), 1U);
 }
 
+TEST(CellSection, DoesNotPlanANegativeControlThatHappensToBeRight) {
+  ReportInput input = houses();
+  for (BlockSummary& block : input.blocks) {
+    block.cells.push_back(walking("by_a_mistake", 0.1, 0.0));
+    block.cells.back().guarantee = Guarantee::erroneous;
+  }
+  std::vector<std::string> planned;
+  input.plan = [&](const BlockSummary&, const CellSummary& cell, const std::filesystem::path&) {
+    planned.push_back(cell.culler);
+    return "house, " + cell.culler;
+  };
+  Fields fields;
+  add_cell_fields(input, ".", fields);
+  EXPECT_EQ(planned, (std::vector<std::string>{"by_outlines"}));
+}
+
+TEST(CellSection, GivesTheFiguresOfSetsOnceAScene) {
+  ReportInput input = houses();
+  input.blocks[1].path = "another";
+  for (BlockSummary& block : input.blocks) {
+    CellSummary cell = fabricated_cell("by_sets", 0.6, 0, 3.0);
+    cell.counters = {{"frames_outside", 0.0}, {"set_bytes", 140.0}, {"set_raw_bytes", 630.0}};
+    RegionVerdict& regions = cell.regions.emplace();
+    regions.cells = 7;
+    regions.rays = 28'672;
+    regions.misses = 2;
+    regions.unseen = 50;
+    regions.seen = 100;
+    regions.kept_by_points = 900;
+    regions.seen_by_points = 400;
+    block.cells.push_back(std::move(cell));
+  }
+  Fields fields;
+  add_cell_fields(input, ".", fields);
+  ASSERT_EQ(fields.lists["set_rows"].size(), 1U);
+  auto& row = fields.lists["set_rows"][0].values;
+  EXPECT_EQ(row["cells"], "7");
+  EXPECT_EQ(row["rays"], "28,672");
+  EXPECT_EQ(row["misses"], "2");
+  EXPECT_EQ(row["over"], format_number(0.5));
+  EXPECT_EQ(row["over_points"], format_number(1.25));
+  EXPECT_EQ(row["set_bytes"], format_number(140.0));
+  EXPECT_EQ(row["raw_bytes"], format_number(630.0));
+}
+
 TEST(CellSection, SaysWhyThereIsNoPlan) {
   ReportInput input = houses();
   input.plan = [](const BlockSummary&, const CellSummary&,
@@ -76,6 +121,7 @@ TEST(CellSection, IsEmptyWhereNobodyWasEverInACell) {
   Fields fields;
   add_cell_fields(input, ".", fields);
   EXPECT_TRUE(fields.lists["cell_rows"].empty());
+  EXPECT_TRUE(fields.lists["set_rows"].empty());
 }
 
 }  // namespace

@@ -78,6 +78,23 @@ TracedWorld& traced_world(const std::string& name) {
   return traced;
 }
 
+/// A counter of sizes, which a culler adds to once a frame.
+Measurement set_size(const std::string& counter, const std::string& spec, const std::string& name) {
+  const PortalWorld& world = portal_world(name);
+  ICuller& culler = *built_sets(spec, name).culler;
+  const SceneState state(world.scene);
+  const auto count = [&] {
+    for (const auto& [known, value] : culler.counters()) {
+      if (known == counter) return value;
+    }
+    throw InputError(spec + " has no counter " + counter);
+  };
+  const std::uint64_t before = count();
+  culler.update({0, world.walk.frames.front().camera, portal_viewport, state.view(), 0.0}, {});
+  const std::uint64_t bytes = count() - before;
+  return {static_cast<double>(bytes) * 1e-3, bytes > 0};
+}
+
 const RegionVerdict& verdict_of(const std::string& spec, const std::string& name) {
   static std::map<std::string, RegionVerdict> known;
   const auto [at, is_new] = known.try_emplace(spec + name);
@@ -122,6 +139,10 @@ void add_set_cases(std::vector<BenchCase>& cases) {
             return Measurement{static_cast<double>(bytes) * 1e-3, bytes > 0};
           },
           {});
+      add(spec, "the sets, as they are stored", "kB",
+          [=] { return set_size("set_bytes", spec, name); }, {});
+      add(spec, "the sets, a bit for each pair", "kB",
+          [=] { return set_size("set_raw_bytes", spec, name); }, {});
       add(
           spec, "misses of 10 million rays", "rays", [=] { return misses(spec, name); },
           Bar::at_most(0.0));
