@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <utility>
 #include <variant>
 
+#include "common/scene/cell_check.h"
 #include "common/scene/description.h"
 #include "common/scene/error.h"
 #include "common/scene/file_bytes.h"
@@ -191,6 +193,22 @@ class Maker {
   const DataFolders& folders_;
 };
 
+/// What walks through portals rely on. Whether surfaces close the cells, rays have to say.
+void require_fitting_portals(const Scene& scene) {
+  const CellCheck check = check_cells(scene);
+  const auto refuse = [](const CellFault& fault, const std::string& what) {
+    if (fault.count == 0) return;
+    std::ostringstream text;
+    text << fault.count << " of the [[portals]] " << what << "; the first is that from cell "
+         << fault.cell << " to cell " << fault.other << " at " << fault.place.x << ' '
+         << fault.place.y << ' ' << fault.place.z
+         << ". Each must lie where both of its cells end, and face the one that it leads from";
+    throw InputError(text.str());
+  };
+  refuse(check.gaps, "have no cell before or behind them");
+  refuse(check.off, "are not on their cells' common boundary");
+}
+
 LoadedScene load_described(const std::filesystem::path& file, const DataFolders& folders) {
   const SceneDescription description = read_scene_description(file);
   LoadedScene loaded;
@@ -198,6 +216,7 @@ LoadedScene load_described(const std::filesystem::path& file, const DataFolders&
   if (!description.cells.cells.empty()) {
     loaded.scene.cells = description.cells.cells;
     loaded.scene.portals = description.cells.portals;
+    require_fitting_portals(loaded.scene);
   }
   if (description.offset != glm::dvec3(0.0)) {
     if (!loaded.scene.cells.empty() || loaded.scene.quake) {

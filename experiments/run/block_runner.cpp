@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "common/geometry/random.h"
+#include "common/judge/cell_leaks.h"
 #include "common/judge/path_truth.h"
 #include "common/judge/region_truth.h"
 #include "common/scene/error.h"
@@ -29,6 +30,7 @@ namespace {
 /// time and say little about the culler.
 constexpr std::size_t largest_drawn_scene_objects = 150'000;
 constexpr std::size_t most_frames_of_larger_scenes = 8;
+constexpr std::size_t leak_rays_per_cell = 200;
 
 /// A cell of the block while it is being measured.
 struct Runner {
@@ -70,6 +72,7 @@ class BlockRun {
     load();
     collect_cells();
     if (std::ranges::any_of(runners_, [](const Runner& r) { return r.missing_rounds > 0; })) {
+      tell_of_leaks();
       trace_truth();
       build_cullers();
       time_rounds();
@@ -102,6 +105,17 @@ class BlockRun {
                       block_.viewport, block_.frames, settings_.folders);
     truth_settings_.seed = block_.seed;
     truth_settings_.threads = block_.threads;
+  }
+
+  /// Of cells that came with the scene; a game map's are as its compiler left them.
+  void tell_of_leaks() {
+    if (scene_->cells.empty() || scene_->quake) return;
+    const CellLeaks leaks = find_cell_leaks(*scene_, leak_rays_per_cell, block_.seed);
+    if (leaks.leaking_cells == 0) return;
+    progress_.line(block_.title() + ": one sees out of " + std::to_string(leaks.leaking_cells) +
+                   " of " + std::to_string(scene_->cells.size()) +
+                   " cells elsewhere than through a portal; methods that walk through portals "
+                   "leave out what is seen there. `vislab check --scene` says where");
   }
 
   void collect_cells() {

@@ -203,6 +203,25 @@ TEST_F(Run, KeepsFailedCellsWithTheirReason) {
   EXPECT_EQ(failed, 1);
 }
 
+TEST_F(Run, TellsOfCellsThatOneSeesOutOfElsewhereThanThroughAPortal) {
+  folder_.write("mesh.off", "OFF\n3 1 0\n-2 0.5 0\n2 0.5 0\n-2 0.5 1\n3 0 1 2\n");
+  const std::string cells =
+      "[mesh]\nfile = \"mesh.off\"\n[[cells]]\nboxes = [[-3, 0, -3], [0, 3, 3]]\n"
+      "[[cells]]\nboxes = [[0, 0, -3], [3, 3, 3]]\n";
+  const auto told = [&](const std::string& portals) {
+    const fs::path scene = folder_.write("rooms.toml", cells + portals);
+    const ProgramResult run = run_vislab({"run", "--culler", "portal.polygon", "--scene", scene,
+                                          "--frames", "2", "--resolution", "32x32", "--rounds", "1",
+                                          "--draw", "none", "--force", "--results", results()});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return run.err.find("elsewhere than through a portal") != std::string::npos;
+  };
+  EXPECT_TRUE(told(""));
+  EXPECT_FALSE(
+      told("[[portals]]\nfrom = 0\nto = 1\n"
+           "corners = [[0, 0, -3], [0, 0, 3], [0, 3, 3], [0, 3, -3]]\n"));
+}
+
 TEST_F(Run, PutsDownATimeOutToItsCell) {
   const std::string heavy = folder_.write(
       "heavy.toml",

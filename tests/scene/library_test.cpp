@@ -104,6 +104,25 @@ TEST(Library, AFileBesideItsDescriptionNeedsNoPackage) {
   EXPECT_EQ(loaded.default_path, "turn");
 }
 
+TEST(Library, RefusesPortalsThatAreNotWhereTheirCellsEnd) {
+  const ScratchFolder folder;
+  folder.write("mesh.off", "OFF\n3 1 0\n-2 0.5 0\n2 0.5 0\n-2 0.5 1\n3 0 1 2\n");
+  const auto described = [&](const std::string& x) {
+    return folder.write(
+        "rooms.toml",
+        "[mesh]\nfile = \"mesh.off\"\n[[cells]]\nboxes = [[-3, 0, -3], [0, 3, 3]]\n"
+        "[[cells]]\nboxes = [[0, 0, -3], [3, 3, 3]]\n[[portals]]\nfrom = 0\nto = 1\ncorners = [[" +
+            x + ", 0, -1], [" + x + ", 0, 1], [" + x + ", 2, 1], [" + x + ", 2, -1]]\n");
+  };
+  const auto message = [&](const std::string& x) {
+    return input_error([&]() { load_scene(described(x).string(), repository_data()); });
+  };
+  EXPECT_EQ(load_scene(described("0").string(), repository_data()).scene.portals.size(), 2U);
+  EXPECT_NE(message("0.3").find("not on their cells' common boundary"), std::string::npos);
+  EXPECT_NE(message("0.001").find("cell 0 to cell 1"), std::string::npos);
+  EXPECT_NE(message("3").find("portals"), std::string::npos);
+}
+
 TEST(Library, ExtensionsMayBeInUpperCase) {
   const ScratchFolder folder;
   folder.write("mesh.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
