@@ -69,6 +69,16 @@ bool only_behind(const Cell& cell, const glm::dvec3& point, const glm::dvec3& to
          !in_cell(cell, point + towards * step, -0.5 * step);
 }
 
+/// Narrower than the tolerance, as rounding leaves some between a map's leaves: no point of it has
+/// a side.
+bool is_sliver(const Portal& portal) {
+  double length = 0.0;
+  for (std::size_t i = 0; i < portal.polygon.size(); ++i) {
+    length += glm::distance(portal.polygon[i], portal.polygon[(i + 1) % portal.polygon.size()]);
+  }
+  return 2.0 * area(portal.polygon) < cell_tolerance_m * length;
+}
+
 void try_portal(const Scene& scene, const Portal& portal, CellCheck& check) {
   const Cell& from = scene.cells[portal.from];
   const Cell& to = scene.cells[portal.to];
@@ -91,7 +101,9 @@ void try_portal(const Scene& scene, const Portal& portal, CellCheck& check) {
 CellCheck check_cells(const Scene& scene) {
   CellCheck check;
   check.overlaps = find_overlaps(scene);
-  for (const Portal& portal : scene.portals) try_portal(scene, portal, check);
+  for (const Portal& portal : scene.portals) {
+    if (!is_sliver(portal)) try_portal(scene, portal, check);
+  }
   return check;
 }
 

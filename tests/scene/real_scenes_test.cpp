@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/geometry/random.h"
+#include "common/scene/cell_check.h"
 #include "common/scene/library.h"
 #include "common/scene/orientation.h"
 #include "common/scene/quake_world.h"
@@ -278,6 +279,13 @@ TEST(Czest3ctf, HasTheKnownCountsAndIsWalkedThroughOnFoot) {
   expect_listed_hits(scene, 20);
   expect_walk_in_the_open(
       scene, load_path("czest3ctf_walk", scene, {512, 512}, 0, repository_data()), 400.0);
+}
+
+TEST(Czest3ctf, HasFewerCellsThatFitTogetherWhenLeavesAreJoinedToRooms) {
+  const Scene scene = load("czest3ctf_rooms");
+  EXPECT_EQ(scene.cells.size(), 328U);
+  const CellCheck check = check_cells(scene);
+  EXPECT_EQ(check.overlaps.count + check.gaps.count + check.off.count, 0U);
 }
 
 TEST(Apartment, IsUprightAndSolidInParts) {
