@@ -274,6 +274,7 @@ class PvsBuilder {
       }
       found_.cells.add(row);
     }
+    found_.cells.finish();
     return std::move(found_);
   }
 

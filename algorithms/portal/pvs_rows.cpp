@@ -27,6 +27,11 @@ void CompressedRows::add(std::span<const std::uint64_t> words) {
   first_.push_back(static_cast<std::uint32_t>(bytes_.size()));
 }
 
+void CompressedRows::finish() {
+  first_.shrink_to_fit();
+  bytes_.shrink_to_fit();
+}
+
 void CompressedRows::unite(std::size_t row, std::span<std::uint64_t> words) const {
   std::size_t to = 0;
   for (std::uint32_t i = first_[row]; i < first_[row + 1]; ++i) {

@@ -24,6 +24,8 @@ class CompressedRows {
   void clear(std::size_t bits_in_row);
   /// Appends a row. O(bits / 8).
   void add(std::span<const std::uint64_t> words);
+  /// To be called after the last row: gives back the room that more rows would take.
+  void finish();
   /// Adds the bits of a row to `words`. O(bytes of the compressed row).
   void unite(std::size_t row, std::span<std::uint64_t> words) const;
 
