@@ -22,7 +22,8 @@ struct ObjectsByPlace {
 };
 
 /// Keeps the objects of all places that are seen from the viewer's, if the frustum's planes do not
-/// exclude them; where the viewer is in no place, all in the frustum. Objects that lie in no place,
+/// exclude them; where the viewer is in no place, or has among them one that a wall has left or
+/// that it is hidden in (closing_objects.h), all in the frustum. Objects that lie in no place,
 /// and those that are elsewhere than the scene puts them, are tested against the frustum only: no
 /// set tells of them. The scene outlives the culler.
 class PvsCuller : public ICuller {
@@ -57,6 +58,8 @@ class PvsCuller : public ICuller {
 
  private:
   void mark();
+  bool is_away(const Frame& frame, ObjectId object) const;
+  void set_gap(ObjectId object, bool is_hidden, bool is_away);
 
   CullerInfo info_;
   const Scene* scene_ = nullptr;
@@ -64,9 +67,12 @@ class PvsCuller : public ICuller {
   std::vector<std::uint8_t> lies_in_a_place_;  // by object, as built
   std::vector<std::uint8_t> is_free_;          // by object: of no place, or away
   bool any_moved_ = false;
-  BitWords seen_;                     // places, of this call
-  BitWords marked_places_;            // those whose objects are marked
-  std::vector<std::uint8_t> marked_;  // by object
+  std::vector<std::uint8_t> is_closing_;  // by object
+  std::vector<std::uint8_t> is_hidden_;   // by object
+  std::vector<ObjectId> gaps_;            // closing objects that are hidden or away
+  BitWords seen_;                         // places, of this call
+  BitWords marked_places_;                // those whose objects are marked
+  std::vector<std::uint8_t> marked_;      // by object
   std::vector<ObjectId> kept_;
   std::uint64_t objects_tested_ = 0;
   std::uint64_t sets_changed_ = 0;

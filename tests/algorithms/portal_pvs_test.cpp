@@ -281,6 +281,40 @@ TEST(Pvs, WhatComesBackIsWhereTheSceneHasItAgain) {
   EXPECT_EQ(other.objects(first_room), (std::vector<ObjectId>{0, 1, 2, 3}));
 }
 
+TEST(Pvs, WhereAWallOfWhatIsSeenIsHiddenOrHasGoneTheFrustumDecides) {
+  Scene scene = rooms_with_holes_at({0.0, 6.0, -6.0});
+  // A piece of the wall between the second and the third room, and one of the last room's end.
+  for (const double x : {8.0, 16.0}) {
+    Mesh wall;
+    for (const glm::dvec3& corner : square(x, 0.0, 1.0)) wall.positions.emplace_back(corner);
+    wall.triangles = {{0, 1, 2}, {0, 2, 3}};
+    const auto object = static_cast<ObjectId>(scene.objects.size());
+    const CellId room = x < 10.0 ? 1 : 3;
+    scene.objects.push_back({static_cast<MeshId>(scene.meshes.size()), glm::dmat4x3(1.0), room});
+    scene.meshes.push_back(wall);
+    scene.cells[room].objects.push_back(object);
+  }
+  scene.finish();
+  const ObjectId wall = 4, unseen_wall = 5;
+  CullerRun run("portal.pvs", scene);
+  const Camera camera = camera_at({1.0, -3.0, 0.0}, {9.0, -3.0, 0.0});
+  const std::vector<ObjectId> closed{0, 1, 2, wall};
+  const std::vector<ObjectId> open{0, 1, 2, 3, unseen_wall};
+  EXPECT_EQ(run.objects(camera), closed);
+  run.update(camera, {{}, {}, {}, {unseen_wall}});
+  EXPECT_EQ(run.objects(camera), closed) << "nobody sees from here that it is hidden";
+  run.update(camera, {{}, {}, {unseen_wall}, {wall}});
+  EXPECT_EQ(run.objects(camera), open);
+  run.update(camera, {{}, {}, {wall}, {}});
+  EXPECT_EQ(run.objects(camera), closed);
+  glm::dmat4x3 aside(1.0);
+  aside[3].z = 2.0;
+  run.update(camera, {{wall}, {aside}, {}, {}});
+  EXPECT_EQ(run.objects(camera), (std::vector<ObjectId>{0, 1, 2, 3, wall, unseen_wall}));
+  run.reset();
+  EXPECT_EQ(run.objects(camera), closed);
+}
+
 TEST(Pvs, WhoeverStandsInTwoCellsSeesWhatBothSee) {
   Scene scene = rooms_with_holes_at({0.0, 1.5, 0.99});
   CullerRun apart("portal.pvs", scene);
