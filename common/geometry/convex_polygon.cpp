@@ -6,7 +6,8 @@ namespace vislab {
 
 ConvexPolygon square_on(const Plane& plane, const glm::dvec3& around, double reach) {
   const glm::dvec3 n = glm::normalize(plane.normal);
-  const glm::dvec3 middle = around - n * (plane.signed_distance(around) / glm::length(plane.normal));
+  const glm::dvec3 middle =
+      around - n * (plane.signed_distance(around) / glm::length(plane.normal));
   const glm::dvec3 other = std::abs(n.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
   const glm::dvec3 u = glm::normalize(glm::cross(other, n)) * reach;
   const glm::dvec3 v = glm::cross(n, u);
