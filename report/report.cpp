@@ -30,10 +30,13 @@ const Program chromium{"chromium", "chromium"};
 constexpr std::chrono::seconds time_limit{60};
 constexpr const char* persistence_file = "persistence.json";
 
-/// The report's parts in their order; each is templates/NAME.md.
-constexpr const char* parts[] = {"front",  "floor",     "depth",    "persistence", "guide",
-                                 "scenes", "published", "surfaces", "cells",       "queries",
-                                 "sweeps", "controls",  "methods",  "metrics",     "measurement"};
+/// The report's parts in their order; each is templates/NAME.md, and is left out where there is no
+/// such file.
+constexpr const char* parts[] = {
+    "summary",  "front",   "introduction", "floor",      "depth",  "persistence",
+    "families", "cells",   "surfaces",     "queries",    "scenes", "published",
+    "guide",    "chains",  "model_size",   "sweeps",     "claims", "errata",
+    "controls", "methods", "metrics",      "measurement"};
 
 /// A folder for work in progress, gone with this object.
 class WorkFolder {
@@ -106,6 +109,7 @@ void write_words(const ReportInput& input, const QueryFindings& queries,
   std::string text;
   for (const std::string part : parts) {
     const fs::path file = folder / (part + ".md");
+    if (!fs::exists(file)) continue;
     text += fill_template(read_template(file), fields, file.string()) + "\n";
   }
   write_text(work / "report.md", text);
