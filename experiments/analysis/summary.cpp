@@ -125,6 +125,17 @@ const CulledOf& culled_of(Culls culls, const CellVerdicts& verdicts, const Culle
   return hidden;
 }
 
+void find_worst_frame(const CellVerdicts& verdicts, CellSummary& summary) {
+  const std::size_t frames = summary.paints ? verdicts.surfaces.size() : verdicts.frames.size();
+  for (std::size_t i = 0; i < frames; ++i) {
+    const std::uint64_t wrong =
+        summary.paints ? verdicts.surfaces[i].surface_px : verdicts.frames[i].false_px;
+    if (wrong <= summary.worst_frame_px) continue;
+    summary.worst_frame = i;
+    summary.worst_frame_px = wrong;
+  }
+}
+
 void summarise_accuracy(const CellVerdicts& verdicts, Culls culls, CellSummary& summary) {
   std::uint64_t visible_triangles = 0, visible_objects = 0, kept_objects = 0;
   std::uint64_t over_triangles = 0, over_objects = 0, under_triangles = 0, hidden_triangles = 0;
@@ -154,6 +165,7 @@ void summarise_accuracy(const CellVerdicts& verdicts, Culls culls, CellSummary& 
     summary.surface_px += surface.surface_px;
     summary.disputed_surface_px += surface.disputed_surface_px;
   }
+  find_worst_frame(verdicts, summary);
   summary.disputed_px = verdicts.floor_disputed_px;
   summary.drawn = !verdicts.images.empty();
   summary.judged = !verdicts.frames.empty();

@@ -50,6 +50,10 @@ struct CellSummary {
   std::uint64_t image_px = 0, disputed_image_px = 0;
   bool paints = false;  // an image of its own: a hidden-surface algorithm
   std::uint64_t surface_px = 0, disputed_surface_px = 0;
+  /// The frame with the most wrong pixels (the first of them), and how many: of the image that it
+  /// paints, else of truth.
+  std::size_t worst_frame = 0;
+  std::uint64_t worst_frame_px = 0;
   // Ratios of sums over all frames; NaN where nothing is visible, or for recall nothing is hidden.
   double over = 0.0, over_objects = 0.0, under = 0.0;
   /// Triangles culled / those that a perfect method of the kind (CullerInfo::culls) would cull.
@@ -78,6 +82,9 @@ struct CellSummary {
   /// frame_ms of the oracle of the same level / frame_ms of this cell, paired.
   Estimate efficiency;
   std::map<std::string, double> counters;  // per frame
+
+  /// False pixels; of a method that paints an image of its own, the wrong ones of that.
+  std::uint64_t wrong_px() const { return paints ? surface_px : false_px; }
 
   /// The value under the metric's name as in `vislab list metrics`; NaN if it does not apply.
   double metric(const std::string& name) const;
