@@ -1,8 +1,12 @@
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <map>
+#include <set>
+#include <sstream>
 
 #include "common/scene/error.h"
+#include "experiments/matrix/matrix.h"
 #include "experiments/verbs/present_results.h"
 #include "experiments/verbs/table.h"
 #include "experiments/verbs/verbs.h"
@@ -26,8 +30,8 @@ RoundTimes beside(const ResultCell& cell, const ResultCell& other) {
 }
 
 /// Frame times of a over those of b, paired by round. The one that is no anchor leads: anchors are
-/// measured beside it.
-Estimate frame_ratio(const ResultCell& a, const ResultCell& b) {
+/// measured beside it. Nothing if they share no round.
+Estimate paired_frames(const ResultCell& a, const ResultCell& b) {
   const bool b_leads = a.anchors.find(b.key.chain) == a.anchors.end();
   const ResultCell& leading = b_leads ? b : a;
   const RoundTimes others = beside(leading, b_leads ? a : b);
@@ -42,10 +46,206 @@ Estimate frame_ratio(const ResultCell& a, const ResultCell& b) {
   return b_leads ? paired_ratio(of_other, of_leading) : paired_ratio(of_leading, of_other);
 }
 
+/// A logarithm and its standard error, as if the interval were that of a normal distribution.
+struct LogRatio {
+  double value = 0.0, error = 0.0;
+};
+
+constexpr double normal_95 = 1.959964;
+
+LogRatio log_of(const Estimate& ratio) {
+  return {std::log(ratio.value), (std::log(ratio.high) - std::log(ratio.low)) / (2.0 * normal_95)};
+}
+
+Estimate estimate_of(const LogRatio& log) {
+  return {std::exp(log.value), std::exp(log.value - normal_95 * log.error),
+          std::exp(log.value + normal_95 * log.error)};
+}
+
+/// The ratio of two that were measured in different runs, each paired with "none" in its own: the
+/// errors of both ratios add up.
+Estimate ratio_through_none(const CellSummary& a, const CellSummary& b) {
+  if (!a.against_none.measured() || !b.against_none.measured()) return Estimate::none();
+  const LogRatio of_a = log_of(a.against_none);
+  const LogRatio of_b = log_of(b.against_none);
+  return estimate_of({of_a.value - of_b.value, std::hypot(of_a.error, of_b.error)});
+}
+
+/// Slower or faster only if the interval says so, and lies farther from 1 than "none" against
+/// itself does.
+std::string speed_verdict(const Estimate& ratio, const Estimate& noise) {
+  if (!ratio.measured()) return "undecided";
+  const double noise_low = noise.measured() ? std::min(1.0, noise.low) : 1.0;
+  const double noise_high = noise.measured() ? std::max(1.0, noise.high) : 1.0;
+  if (ratio.high < noise_low) return "faster";
+  if (ratio.low > noise_high) return "slower";
+  return "undecided";
+}
+
+/// Undisputed errors of a cell, or of several.
+struct Errors {
+  std::uint64_t false_px = 0, false_objects = 0, image_px = 0;
+
+  void add(const Errors& other) {
+    false_px += other.false_px;
+    false_objects += other.false_objects;
+    image_px += other.image_px;
+  }
+};
+
+Errors errors_of(const CellSummary& cell) {
+  return {cell.false_px, cell.false_objects, cell.drawn ? cell.image_px : 0};
+}
+
+/// Of a against b: "mixed" if some counts are more and others fewer.
+std::string error_verdict(const Errors& a, const Errors& b) {
+  const bool more =
+      a.false_px > b.false_px || a.false_objects > b.false_objects || a.image_px > b.image_px;
+  const bool fewer =
+      a.false_px < b.false_px || a.false_objects < b.false_objects || a.image_px < b.image_px;
+  if (more && fewer) return "mixed";
+  return more ? "more" : fewer ? "fewer" : "same";
+}
+
 const CellSummary* find_cell(const BlockSummary& block, const std::string& chain) {
   const auto cell = std::ranges::find_if(
       block.cells, [&](const CellSummary& c) { return c.canonical == chain && c.replicate == 0; });
   return cell == block.cells.end() ? nullptr : &*cell;
+}
+
+/// Why a block has no ratio, or what is to be known of it.
+std::string note_on(const CellSummary& a, const CellSummary& b, bool paired, bool measured) {
+  for (const CellSummary* cell : {&a, &b}) {
+    if (cell->status == ResultCell::Status::failed) {
+      return cell->culler + " failed: " + cell->reason;
+    }
+  }
+  if (!measured) return "no round has both";
+  if (!paired) return "measured in different runs: through none";
+  if (!a.judged || !b.judged) return "errors are not judged yet";
+  return "";
+}
+
+/// What is known of two chains in all blocks of one device.
+struct Overall {
+  std::vector<Estimate> ratios;
+  std::vector<Estimate> noises;
+  Errors a, b;
+  std::size_t blocks = 0, judged = 0;
+
+  /// The geometric mean of the blocks' ratios: of these blocks, not of scenes at large.
+  static Estimate mean(const std::vector<Estimate>& ratios) {
+    if (ratios.empty()) return Estimate::none();
+    if (ratios.size() == 1) return ratios.front();
+    LogRatio sum;
+    for (const Estimate& ratio : ratios) {
+      const LogRatio log = log_of(ratio);
+      sum.value += log.value;
+      sum.error = std::hypot(sum.error, log.error);
+    }
+    const auto count = static_cast<double>(ratios.size());
+    return estimate_of({sum.value / count, sum.error / count});
+  }
+};
+
+std::string quoted(const std::string& text) {
+  return text.find_first_of(" []>()&;*?$") == std::string::npos ? text : "'" + text + "'";
+}
+
+/// The calls that measure `chain` where `cell` was measured.
+std::string command_beside(const ResultCell& cell, const std::string& chain, int frames,
+                           const std::filesystem::path& results) {
+  std::ostringstream call;
+  call << "vislab run --culler " << quoted(chain) << " --scene " << quoted(cell.scene_source);
+  if (!cell.path_source.empty()) call << " --path " << quoted(cell.path_source);
+  call << " --resolution " << cell.key.viewport.width << "x" << cell.key.viewport.height
+       << " --frames " << frames << " --draw " << quoted(cell.key.device) << " --threads "
+       << cell.key.threads << " --results " << quoted(results.string());
+  return call.str();
+}
+
+/// The smallest matrix with a block that has both chains; "" if there is none.
+std::string matrix_with(const Lab& lab, const std::string& a, const std::string& b) {
+  std::string best;
+  std::size_t cells_of_best = 0;
+  for (const auto& [name, text] : list_matrices(lab.matrices)) {
+    std::size_t cells = 0;
+    bool both = false;
+    try {
+      for (const Block& block : load_matrix(name, lab.matrices, lab.cullers).blocks) {
+        std::set<std::string> chains;
+        for (const BlockCuller& culler : block.cullers) chains.insert(culler.chain);
+        both |= chains.contains(a) && chains.contains(b);
+        cells += block.cullers.size();
+      }
+    } catch (const InputError&) {
+      continue;  // a broken matrix is no advice
+    }
+    if (both && (best.empty() || cells < cells_of_best)) {
+      best = name;
+      cells_of_best = cells;
+    }
+  }
+  return best;
+}
+
+/// What to call so that both chains are in one block.
+std::string advice(const Lab& lab, const std::string& a, const std::string& b,
+                   const std::vector<BlockSummary>& blocks,
+                   const std::map<std::string, const ResultCell*>& by_id,
+                   const std::filesystem::path& results) {
+  const std::string name_a = lab.cullers.short_name(a);
+  const std::string name_b = lab.cullers.short_name(b);
+  for (const auto& [there, other] : {std::pair(a, name_b), std::pair(b, name_a)}) {
+    for (const BlockSummary& block : blocks) {
+      const CellSummary* const cell = find_cell(block, there);
+      // The lab's own anchors are everywhere: only a matrix says where the other is worth a look.
+      if (cell == nullptr || cell->anchor) continue;
+      return command_beside(*by_id.at(cell->id), other, block.frames, results);
+    }
+  }
+  const std::string to = " --results " + quoted(results.string());
+  if (const std::string matrix = matrix_with(lab, a, b); !matrix.empty()) {
+    return "vislab run " + matrix + to;
+  }
+  const std::vector<std::string> anchors = anchor_chains(lab.cullers);
+  const auto is_anchor = [&](const std::string& chain) {
+    return std::ranges::find(anchors, chain) != anchors.end();
+  };
+  const std::string call =
+      "vislab run --culler " + quoted(is_anchor(a) ? name_b : name_a) + " --scene SCENE" + to;
+  if (is_anchor(a) || is_anchor(b)) return call;
+  return call + ", and the same with --culler " + quoted(name_b);
+}
+
+/// "a is faster than b: 0.62 of its time (0.60 to 0.64) in 3 blocks on osmesa; the same errors".
+std::string sentence(const std::string& a, const std::string& b, const std::string& device,
+                     const Overall& overall, const Estimate& ratio, const std::string& speed) {
+  std::ostringstream text;
+  if (speed == "undecided") {
+    text << "undecided whether " << a << " is faster than " << b;
+  } else {
+    text << a << " is " << speed << " than " << b;
+  }
+  if (ratio.measured()) {
+    text << ": " << to_text(ratio.value) << " of its time (" << to_text(ratio.low) << " to "
+         << to_text(ratio.high) << ")";
+  }
+  text << " in " << overall.blocks << (overall.blocks == 1 ? " block" : " blocks") << ", "
+       << (device == "none" ? "nothing drawn" : "drawn by " + device) << "; ";
+  if (overall.judged == 0) {
+    text << "errors are not judged";
+  } else {
+    const std::string errors = error_verdict(overall.a, overall.b);
+    text << (errors == "same"    ? "the same errors"
+             : errors == "mixed" ? "more errors of one kind, fewer of another"
+                                 : errors + " errors");
+  }
+  return text.str();
+}
+
+TableValue judged_text(bool judged, const std::string& text) {
+  return judged ? TableValue(text) : TableValue();
 }
 
 }  // namespace
@@ -54,34 +254,145 @@ int compare(const Lab& lab, const std::string& a, const std::string& b,
             const std::filesystem::path& results, bool json) {
   const std::string chain_a = lab.cullers.canonical(a);
   const std::string chain_b = lab.cullers.canonical(b);
+  if (chain_a == chain_b) {
+    throw InputError("'" + a + "' and '" + b + "' are the same chain, " + chain_a +
+                     "; compare takes two that differ");
+  }
+  const std::string name_a = lab.cullers.short_name(a);
+  const std::string name_b = lab.cullers.short_name(b);
   const std::vector<JudgedCell> cells = require_present_cells(results, lab.cullers);
   std::map<std::string, const ResultCell*> by_id;
   for (const JudgedCell& judged : cells) by_id[judged.cell.key.id()] = &judged.cell;
 
-  Table table({"scene", "path", "a", "b", "ratio", "ratio_low", "ratio_high", "frame_ms_a",
-               "frame_ms_p99_a", "frame_ms_b", "frame_ms_p99_b", "device", "false_px_a",
-               "false_px_b", "over_a", "over_b"});
-  bool any = false;
-  for (const BlockSummary& block : summarise(cells)) {
+  Table table({"scene",
+               "path",
+               "device",
+               "blocks",
+               "a",
+               "b",
+               "speed",
+               "ratio",
+               "ratio_low",
+               "ratio_high",
+               "noise_low",
+               "noise_high",
+               "frame_ms_a",
+               "frame_ms_p99_a",
+               "frame_ms_b",
+               "frame_ms_p99_b",
+               "errors",
+               "false_px_a",
+               "false_px_b",
+               "image_px_a",
+               "image_px_b",
+               "false_objects_a",
+               "false_objects_b",
+               "over_a",
+               "over_b",
+               "note"});
+  std::map<std::string, Overall> by_device;
+  const std::vector<BlockSummary> blocks = summarise(cells);
+  for (const BlockSummary& block : blocks) {
     const CellSummary* const in_a = find_cell(block, chain_a);
     const CellSummary* const in_b = find_cell(block, chain_b);
     if (in_a == nullptr || in_b == nullptr) continue;
-    any = true;
-    const Estimate ratio = frame_ratio(*by_id.at(in_a->id), *by_id.at(in_b->id));
-    const auto judged = [](const CellSummary& cell, auto value) {
+    Estimate ratio = paired_frames(*by_id.at(in_a->id), *by_id.at(in_b->id));
+    const bool paired = ratio.measured();
+    if (!paired) ratio = ratio_through_none(*in_a, *in_b);
+    const bool both_judged = in_a->judged && in_b->judged;
+    const bool both_drawn = in_a->drawn && in_b->drawn;
+
+    Overall& overall = by_device[block.device];
+    ++overall.blocks;
+    if (ratio.measured() && ratio.low > 0.0) overall.ratios.push_back(ratio);
+    if (block.noise.measured() && block.noise.low > 0.0) {
+      overall.noises.push_back(block.noise);
+    }
+    if (both_judged) {
+      ++overall.judged;
+      overall.a.add(errors_of(*in_a));
+      overall.b.add(errors_of(*in_b));
+    }
+    const auto judged = [&](const CellSummary& cell, auto value) {
       return cell.judged ? TableValue(value) : TableValue();
     };
-    table.add({block.scene, block.path, in_a->culler, in_b->culler, ratio.value, ratio.low,
-               ratio.high, in_a->frame_ms.median.value, in_a->frame_ms.p99,
-               in_b->frame_ms.median.value, in_b->frame_ms.p99, block.device,
-               judged(*in_a, in_a->false_px), judged(*in_b, in_b->false_px),
-               judged(*in_a, in_a->over), judged(*in_b, in_b->over)});
+    const auto image = [&](const CellSummary& cell) {
+      return both_drawn ? judged(cell, cell.image_px) : TableValue();
+    };
+    table.add({block.scene,
+               block.path,
+               block.device,
+               std::uint64_t{1},
+               in_a->culler,
+               in_b->culler,
+               speed_verdict(ratio, block.noise),
+               ratio.value,
+               ratio.low,
+               ratio.high,
+               block.noise.low,
+               block.noise.high,
+               in_a->frame_ms.median.value,
+               in_a->frame_ms.p99,
+               in_b->frame_ms.median.value,
+               in_b->frame_ms.p99,
+               judged_text(both_judged, error_verdict(errors_of(*in_a), errors_of(*in_b))),
+               judged(*in_a, in_a->false_px),
+               judged(*in_b, in_b->false_px),
+               image(*in_a),
+               image(*in_b),
+               judged(*in_a, in_a->false_objects),
+               judged(*in_b, in_b->false_objects),
+               judged(*in_a, in_a->over),
+               judged(*in_b, in_b->over),
+               note_on(*in_a, *in_b, paired, ratio.measured())});
   }
-  if (!any) {
-    throw InputError("no block in " + results.string() + " has both " + lab.cullers.short_name(a) +
-                     " and " + lab.cullers.short_name(b));
+  if (by_device.empty()) {
+    throw InputError(
+        "no block in " + results.string() + " has both " + name_a + " and " + name_b +
+        "; measure them with: " + advice(lab, chain_a, chain_b, blocks, by_id, results));
+  }
+  std::string answer;
+  for (const auto& [device, overall] : by_device) {
+    const Estimate ratio = Overall::mean(overall.ratios);
+    const Estimate noise = Overall::mean(overall.noises);
+    const std::string speed = speed_verdict(ratio, noise);
+    const bool judged = overall.judged > 0;
+    const auto count = [&](std::uint64_t value) {
+      return judged ? TableValue(value) : TableValue();
+    };
+    const auto image = [&](std::uint64_t value) {
+      return device == "none" ? TableValue() : count(value);
+    };
+    table.add({{},
+               {},
+               device,
+               std::uint64_t{overall.blocks},
+               name_a,
+               name_b,
+               speed,
+               ratio.value,
+               ratio.low,
+               ratio.high,
+               noise.low,
+               noise.high,
+               {},
+               {},
+               {},
+               {},
+               judged_text(judged, error_verdict(overall.a, overall.b)),
+               count(overall.a.false_px),
+               count(overall.b.false_px),
+               image(overall.a.image_px),
+               image(overall.b.image_px),
+               count(overall.a.false_objects),
+               count(overall.b.false_objects),
+               {},
+               {},
+               "all blocks"});
+    answer += sentence(name_a, name_b, device, overall, ratio, speed) + "\n";
   }
   table.print(std::cout, json);
+  if (!json) std::cout << '\n' << answer;
   return 0;
 }
 

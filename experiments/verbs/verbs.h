@@ -64,7 +64,10 @@ int show_queries(const Lab& lab, const ShowCall& call);
 /// The index of a frame. Throws InputError if the path has no such frame.
 std::size_t require_frame(const Path& path, int frame);
 
-/// Two chains in every block of the results that has both.
+/// Two chains in every block of the results that has both, then over all blocks of each device: is
+/// `a` faster or slower (ratio of frame_ms, paired by round, with its bootstrap 95 % interval;
+/// undecided if that reaches 1, or what "none" against itself shows), and has it more or fewer
+/// undisputed errors? Throws InputError that says what to run if no block has both.
 int compare(const Lab& lab, const std::string& a, const std::string& b,
             const std::filesystem::path& results, bool json);
 /// All cells with all metrics; `format` is csv or json.
@@ -75,6 +78,9 @@ int report(const Lab& lab, const std::filesystem::path& results,
 /// breaks that never should.
 int atlas(const Lab& lab, const std::filesystem::path& results, bool json);
 int check(const Lab& lab, const std::string& culler, bool json);
+/// The answers of matrix smoke against the committed ones: 1 if any differ. `write` commits those in
+/// `results` instead.
+int baseline(const Lab& lab, const std::filesystem::path& results, bool write, bool json);
 /// Do the cells and portals of a scene fit together, and do surfaces close them? 1 if not.
 int check_scene(const Lab& lab, const std::string& scene, bool json);
 
