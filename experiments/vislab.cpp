@@ -22,6 +22,7 @@ Lab make_lab() {
   lab.matrices = lab.repository / "experiments" / "matrices";
   lab.sweeps = lab.repository / "experiments" / "stress";
   lab.published = lab.repository / "experiments" / "published";
+  lab.errata = lab.repository / "experiments" / "errata" / "errata.toml";
   lab.report = lab.repository / "report";
   return lab;
 }

@@ -1,5 +1,5 @@
-// The report's sections that put methods beside each other across scenes: which one to use, what
-// the wrong ones do, and what the sources published.
+// The report's sections that put methods beside each other across scenes: which one to use, and what
+// the sources published.
 #pragma once
 
 #include <vector>
@@ -10,13 +10,8 @@
 
 namespace vislab {
 
-/// One entry for each kind of culling with enough methods, for templates/guide.md.
+/// One entry for each kind of culling with enough methods, for templates/chains.md.
 std::vector<Fields> guide_fields(const std::vector<BlockSummary>& blocks);
-
-/// One entry for each mistake of the methods that are declared erroneous and were judged on any
-/// block, stress sweeps included, for templates/controls.md. Methods of one summary make the same
-/// mistake; the worst of them stands for it.
-std::vector<Fields> control_fields(const ReportInput& input);
 
 /// One entry for each block with methods that paint an image themselves, for templates/surfaces.md.
 /// Pictures go into `folder`.

@@ -10,7 +10,9 @@
 
 #include "common/scene/error.h"
 #include "report/cell_section.h"
+#include "report/chains_section.h"
 #include "report/chart.h"
+#include "report/errata_section.h"
 #include "report/method_fields.h"
 #include "report/persistence_section.h"
 #include "report/process.h"
@@ -35,8 +37,8 @@ constexpr const char* persistence_file = "persistence.json";
 constexpr const char* parts[] = {
     "summary",  "front",   "introduction", "floor",      "depth",  "persistence",
     "families", "cells",   "surfaces",     "queries",    "scenes", "published",
-    "guide",    "chains",  "model_size",   "sweeps",     "claims", "errata",
-    "controls", "methods", "metrics",      "measurement"};
+    "chains",   "model_size", "sweeps",    "claims",     "errata", "methods",
+    "metrics",  "measurement"};
 
 /// A folder for work in progress, gone with this object.
 class WorkFolder {
@@ -105,6 +107,8 @@ void write_words(const ReportInput& input, const QueryFindings& queries,
   add_persistence_fields(persistence, fields);
   add_query_fields(input, queries, work, fields);
   add_cell_fields(input, work, fields);
+  add_chain_fields(input, fields);
+  add_errata_fields(input, work, fields);
   cite_sources(read_template(templates / "bibliography.bib"), fields.lists["methods"]);
   std::string text;
   for (const std::string part : parts) {

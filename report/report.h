@@ -8,6 +8,7 @@
 
 #include "common/culler/registry.h"
 #include "experiments/analysis/break_points.h"
+#include "experiments/analysis/errata.h"
 #include "experiments/analysis/persistence.h"
 #include "experiments/analysis/published.h"
 #include "experiments/analysis/summary.h"
@@ -22,6 +23,7 @@ struct ReportInput {
   std::vector<BlockSummary> sweep_blocks;
   std::vector<SweepResult> sweeps;
   std::vector<PublishedFigures> published;
+  std::vector<Erratum> errata;
   const Registry* cullers = nullptr;  // for the method pages
   /// Writes a picture of a block's most telling frame under a culler to `file` (PNG), as `vislab
   /// show` does; returns a caption. Empty function: no pictures.

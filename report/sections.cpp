@@ -363,15 +363,12 @@ Fields report_fields(const ReportInput& input, const std::string& verdict_templa
   fields.values["diagram_floor"] = format_of(floor.disputed, floor.pixels);
   fields.values["diagram_undisputed"] = format_count(floor.undisputed);
   add_depth_fields(input, in_diagrams, folder, fields);
-  fields.lists["guides"] = guide_fields(input.blocks);
   fields.lists["published"] = published_fields(input.published, input.blocks);
   fields.flag("has_published", !fields.lists["published"].empty());
   fields.lists["surfaces"] = surface_fields(input, folder);
   fields.flag("has_surfaces", !fields.lists["surfaces"].empty());
   fields.lists["sweeps"] = sweep_fields(input.sweeps);
   fields.flag("has_sweeps", !fields.lists["sweeps"].empty());
-  fields.lists["controls"] = control_fields(input);
-  fields.flag("has_controls", !fields.lists["controls"].empty());
   fields.lists["methods"] = method_fields(input);
   fields.lists["metrics"] = metric_fields();
   fields.lists["mixed_build"] = mixed_build_fields(input.blocks);

@@ -120,6 +120,7 @@ int report(const Lab& lab, const std::filesystem::path& results,
   std::tie(input.blocks, input.sweep_blocks) = split_sweeps(lab, summarise(cells), results);
   input.sweeps = sweep_results(lab, results, cells);
   input.published = load_published(lab.published, lab.cullers);
+  input.errata = load_errata(lab.errata, lab.cullers);
   input.cullers = &lab.cullers;
   StoredScenes scenes(results, lab.data);
   StoredPictures pictures(results, scenes);

@@ -20,6 +20,7 @@ struct Lab {
   std::filesystem::path matrices;
   std::filesystem::path sweeps;     // experiments/stress
   std::filesystem::path published;  // figures of the sources
+  std::filesystem::path errata;     // the file of their errata
   std::filesystem::path report;     // templates
 };
 

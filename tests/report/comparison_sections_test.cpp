@@ -74,27 +74,6 @@ TEST(SweepChart, RingsTheBreakPointAndNamesTheDial) {
   EXPECT_LT(script.find("set terminal"), script.find("set output"));
 }
 
-TEST(Controls, EachWrongMethodStandsWithItsWorstDamage) {
-  ReportInput input;
-  BlockSummary block = fabricated_block("plain");
-  block.cells.push_back(fabricated_cell("frustum.flat", 0.3, 0, 1.0));
-  block.cells.push_back(fabricated_cell("frustum.lucky", 0.3, 0, 0.5));  // promises nothing
-  block.cells.back().guarantee = Guarantee::approximate;
-  CellSummary wrong = fabricated_cell("frustum.wrong", 0.2, 1000, 6.5);
-  wrong.guarantee = Guarantee::erroneous;
-  block.cells.push_back(wrong);
-  input.blocks.push_back(block);
-  BlockSummary stress = fabricated_block("stress");
-  wrong.false_px = 9'000;
-  stress.cells.push_back(wrong);
-  input.sweep_blocks.push_back(stress);
-  const std::vector<Fields> rows = control_fields(input);
-  ASSERT_EQ(rows.size(), 1U);
-  EXPECT_NE(rows[0].values.at("false_px").find("9,000 of 15,728,640"), std::string::npos);
-  EXPECT_NE(rows[0].values.at("false_px").find("stress"), std::string::npos);
-  EXPECT_NE(rows[0].values.at("over").find("6.50 against 1.00, on plain"), std::string::npos);
-}
-
 TEST(GuideSection, GivesOneSentenceOfAdviceAndARowAScene) {
   BlockSummary block = fabricated_block("plain");
   for (const auto& [name, us] :

@@ -1,0 +1,131 @@
+#include "report/chains_section.h"
+
+#include <algorithm>
+#include <set>
+
+#include "experiments/analysis/chains.h"
+#include "report/comparison_sections.h"
+#include "report/format.h"
+
+namespace vislab {
+namespace {
+
+constexpr std::size_t most_named = 3;  // of those that cannot be told from the fastest
+
+/// The scene and path, and what else tells blocks on them apart.
+std::string place_of(const std::vector<ChainChoice>& choices, const BlockSummary& block) {
+  const auto same = std::ranges::count_if(choices, [&](const ChainChoice& choice) {
+    return choice.block->scene == block.scene && choice.block->path == block.path;
+  });
+  std::string place = block.scene + (block.path.empty() ? "" : ", " + block.path);
+  if (same > 1) {
+    place += ", " + std::to_string(block.viewport.width) + " × " +
+             std::to_string(block.viewport.height) + ", " + block.device;
+  }
+  return markdown_text(place);
+}
+
+std::string undecided_text(const ChainChoice& choice) {
+  if (choice.undecided.empty()) return "decided";
+  std::string text = "undecided: ";
+  const std::size_t named = std::min(most_named, choice.undecided.size());
+  for (std::size_t i = 0; i < named; ++i) {
+    text += (i == 0 ? "" : ", ") + markdown_code(choice.undecided[i]->culler);
+  }
+  const std::size_t others = choice.undecided.size() - named;
+  return others == 0 ? text : text + " and " + std::to_string(others) + " more";
+}
+
+std::string worth_text(const ChainChoice& choice) {
+  const Estimate& ratio = choice.best->against_none;
+  switch (choice.worth) {
+    case ChainChoice::Worth::saves:
+      return "saves " + format_percents(1.0 - ratio.high, 1.0 - ratio.low);
+    case ChainChoice::Worth::loses:
+      return "draw everything: loses " + format_percents(ratio.low - 1.0, ratio.high - 1.0);
+    case ChainChoice::Worth::within_noise:
+    case ChainChoice::Worth::nothing:
+      break;
+  }
+  return "no faster than drawing everything, as far as can be told";
+}
+
+Fields choice_fields(const std::string& place, const ChainChoice& choice) {
+  Fields row;
+  row.values["scene"] = place;
+  for (const char* name : {"ratio", "worth", "undecided", "near", "near_ratio", "near_px"}) {
+    row.values[name] = "–";
+  }
+  row.values["best"] = "none without an error";
+  if (choice.best != nullptr) {
+    row.values["best"] = markdown_code(choice.best->culler);
+    row.values["ratio"] = format_estimate(choice.best->against_none);
+    row.values["worth"] = worth_text(choice);
+    row.values["undecided"] = undecided_text(choice);
+  }
+  if (choice.nearly_right != nullptr) {
+    const CellSummary& near = *choice.nearly_right;
+    row.values["near"] = markdown_code(near.culler);
+    row.values["near_ratio"] = format_estimate(near.against_none);
+    row.values["near_px"] = format_of(near.false_px, near.pixels);
+  }
+  return row;
+}
+
+/// The fastest of each family; those in question for the fastest of all in bold.
+Fields family_row(const std::string& place, const ChainChoice& choice,
+                  const std::set<std::string>& families) {
+  Fields row;
+  row.values["scene"] = place;
+  for (const std::string& family : families) {
+    const auto found = choice.families.find(family);
+    std::string text = "–";
+    if (found != choice.families.end()) {
+      text = format_number(found->second->against_none.value);
+      if (choice.is_undecided(*found->second)) text = "**" + text + "**";
+    }
+    row.lists["cells"].emplace_back();
+    row.lists["cells"].back().values["ratio"] = text;
+  }
+  return row;
+}
+
+Fields tally_fields(const std::string& family, const FamilyTally& tally) {
+  Fields row;
+  row.values["family"] = markdown_code(family);
+  row.values["wins"] = std::to_string(tally.wins);
+  row.values["undecided"] = std::to_string(tally.undecided - tally.wins);
+  row.values["blocks"] = std::to_string(tally.blocks);
+  return row;
+}
+
+}  // namespace
+
+void add_chain_fields(const ReportInput& input, Fields& fields) {
+  const std::vector<ChainChoice> choices = choose_chains(input.blocks);
+  auto& rows = fields.lists["choices"];
+  auto& family_rows = fields.lists["family_choices"];
+  auto& names = fields.lists["chosen_families"];
+  std::set<std::string> families;
+  for (const ChainChoice& choice : choices) {
+    for (const auto& [family, cell] : choice.families) families.insert(family);
+  }
+  for (const ChainChoice& choice : choices) {
+    const std::string place = place_of(choices, *choice.block);
+    rows.push_back(choice_fields(place, choice));
+    if (choice.best != nullptr) family_rows.push_back(family_row(place, choice, families));
+  }
+  const auto tallies = tally_families(choices);
+  for (const std::string& family : families) {
+    names.push_back(tally_fields(family, tallies.at(family)));
+  }
+  fields.values["tolerance"] = format_percent(nearly_right_share);
+  fields.values["not_timed"] = std::to_string(input.blocks.size() - choices.size());
+  fields.flag("has_not_timed", choices.size() < input.blocks.size());
+  fields.flag("has_choices", !choices.empty());
+  fields.flag("has_families", !families.empty());
+  fields.lists["guides"] = guide_fields(input.blocks);
+  fields.flag("has_chains", !choices.empty() || !fields.lists["guides"].empty());
+}
+
+}  // namespace vislab
