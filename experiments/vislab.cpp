@@ -43,6 +43,8 @@ class CommandLine {
     add_report();
     add_atlas();
     add_check();
+    add_new_culler();
+    add_baseline();
   }
 
   /// The exit code.
@@ -203,15 +205,34 @@ class CommandLine {
   }
   void add_check() {
     CLI::App* const sub =
-        verb("check", "contract tests on one culler or chain, or the cells of a scene", [this] {
-          if (checked_culler_.empty() == checked_scene_.empty()) {
-            throw InputError("check takes either --culler or --scene");
-          }
-          return checked_culler_.empty() ? check_scene(lab_, checked_scene_, json_)
-                                         : check(lab_, checked_culler_, json_);
-        });
-    sub->add_option("--culler", checked_culler_, "does it keep its contract?");
+        verb("check", "contract tests on one culler or chain, or on all; or the cells of a scene",
+             [this] {
+               if (!checked_culler_.empty() && !checked_scene_.empty()) {
+                 throw InputError("check takes --culler or --scene, not both");
+               }
+               if (!checked_scene_.empty()) return check_scene(lab_, checked_scene_, json_);
+               if (checked_culler_.empty()) return check_all(lab_, json_);
+               return check(lab_, checked_culler_, check_picture_, json_);
+             });
+    CLI::Option* const culler =
+        sub->add_option("--culler", checked_culler_, "does it keep its contract?");
     sub->add_option("--scene", checked_scene_, "do its cells and portals fit together?");
+    sub->add_option("-o,--output", check_picture_,
+                    "PNG file for the first wrong pixel; out/check/NAME.png if not given")
+        ->needs(culler);
+    add_json(sub);
+  }
+  void add_new_culler() {
+    CLI::App* const sub = verb("new-culler", "the files of a new culler, from algorithms/skeleton",
+                               [this] { return new_culler(lab_, name_); });
+    sub->add_option("name", name_, "family.variant; the family may be a new one")->required();
+  }
+  void add_baseline() {
+    CLI::App* const sub =
+        verb("baseline", "do cullers answer as committed? sets and counters of the matrix smoke",
+             [this] { return baseline(lab_, run_.results, write_baseline_, json_); });
+    sub->add_flag("--write", write_baseline_, "write tests/baseline.toml from the results");
+    add_results(sub);
     add_json(sub);
   }
 
@@ -222,6 +243,8 @@ class CommandLine {
   std::function<int()> action_;
   std::string name_, other_;
   std::string checked_culler_, checked_scene_;
+  std::filesystem::path check_picture_;
+  bool write_baseline_ = false;
   bool json_ = false;
   RunCall run_;
   ShowCall show_;

@@ -150,6 +150,22 @@ class GuaranteeJudge {
     return {};
   }
 
+  bool promises() const {
+    return guarantee_ == Guarantee::conservative || guarantee_ == Guarantee::image_exact;
+  }
+
+  /// The first wrong pixel of an answer, as breach() takes it; `title` heads its picture.
+  std::optional<Witness> witness(std::size_t index, const VisibleSet& offered,
+                                 const VisibleSet& kept, std::span<const ObjectId> one_sided,
+                                 const std::string& title) {
+    const Frame frame = scenario_->frame(index);
+    const Offer all(OfferKind::everything, scenario_->scene(), frame);
+    const VisibleSet drawn = united(kept, without(all.set(), offered));
+    if (!promises() && lost(frame, drawn).empty()) return std::nullopt;
+    const SeenBy judge = guarantee_ == Guarantee::image_exact ? SeenBy::device : SeenBy::rays;
+    return find_witness(*scenario_, index, drawn, one_sided, judge, title);
+  }
+
  private:
   std::string lost(const Frame& frame, const VisibleSet& drawn) {
     const FrameTruth& truth = scenario_->truth().frame(frame.index);
@@ -189,9 +205,11 @@ class GuaranteeJudge {
 class Walks {
  public:
   Walks(const Registry& registry, const std::string& spec, Scenario& scenario, RenderDevice* device,
-        Findings& findings)
+        Findings& findings, std::optional<Witness>* witness)
       : scenario_(&scenario),
         findings_(&findings),
+        witness_(witness),
+        title_(registry.short_name(spec)),
         subject_(registry, spec, scenario, device, 1),
         other_(registry, spec, scenario, device, 2),
         judge_(scenario, subject_.info()) {}
@@ -243,8 +261,15 @@ class Walks {
     for (std::size_t i = 0; i < scenario_->frame_count(); ++i) {
       subject_.go_to(i);
       sets.push_back(asked(subject_, i, batches));
-      findings_->report(Findings::guarantee, where(i),
-                        judge_.breach(i, offered(i, batches), sets.back(), subject_.one_sided()));
+      const VisibleSet offer = offered(i, batches);
+      const std::string breach = judge_.breach(i, offer, sets.back(), subject_.one_sided());
+      findings_->report(Findings::guarantee, where(i), breach);
+      // Of what promises nothing, only answers to everything are looked at: one is enough.
+      const bool of_interest =
+          judge_.promises() ? !breach.empty() : batches.front() == OfferKind::everything;
+      if (witness_ != nullptr && !witness_->has_value() && of_interest) {
+        *witness_ = judge_.witness(i, offer, sets.back(), subject_.one_sided(), title_);
+      }
     }
     subject_.reset();
     for (std::size_t i = 0; i < scenario_->frame_count(); ++i) {
@@ -290,6 +315,8 @@ class Walks {
 
   Scenario* scenario_;
   Findings* findings_;
+  std::optional<Witness>* witness_;  // null: nobody asks
+  std::string title_;
   Subject subject_;
   Subject other_;
   GuaranteeJudge judge_;
@@ -326,7 +353,8 @@ std::string unstated_need(const Registry& registry, const std::string& spec,
 
 }  // namespace
 
-std::vector<ContractResult> check_contract(const Registry& registry, const std::string& spec) {
+std::vector<ContractResult> check_contract(const Registry& registry, const std::string& spec,
+                                           std::optional<Witness>* witness) {
   const bool needs_device = registry.make(spec)->info().needs_device;
   Findings findings;
   findings.report(Findings::info, "", incomplete_info(registry, spec));
@@ -344,7 +372,7 @@ std::vector<ContractResult> check_contract(const Registry& registry, const std::
       if (first)
         findings.report(Findings::needs, "", unstated_need(registry, spec, scenario, used));
       first = false;
-      Walks(registry, spec, scenario, used, findings).run();
+      Walks(registry, spec, scenario, used, findings, witness).run();
     } catch (const std::exception& error) {
       findings.report(Findings::emission, "scene '" + scenario.name() + "'",
                       std::string("it threw: ") + error.what());

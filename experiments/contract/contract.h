@@ -2,10 +2,12 @@
 // run it over any registered culler or chain.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/culler/registry.h"
+#include "experiments/contract/witness.h"
 
 namespace vislab {
 
@@ -26,7 +28,11 @@ struct ContractResult {
 /// - its answers come again as its repeatability declares, with one thread and with two;
 /// - its guarantee holds, by ray casts (conservative) or on the image (image_exact);
 /// - it allocates nothing when a path is walked a second time.
-/// Throws InputError if `spec` is not a culler. Takes about a second.
-std::vector<ContractResult> check_contract(const Registry& registry, const std::string& spec);
+/// `witness`, if it is not null, becomes the first wrong pixel: of the answer that breaks the
+/// guarantee, or, of methods that promise nothing (approximate, erroneous), of the first answer
+/// that leaves out something visible; none if there is no such answer. Throws InputError if `spec`
+/// is not a culler. Takes about a second.
+std::vector<ContractResult> check_contract(const Registry& registry, const std::string& spec,
+                                           std::optional<Witness>* witness = nullptr);
 
 }  // namespace vislab

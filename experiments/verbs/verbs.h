@@ -78,7 +78,16 @@ int report(const Lab& lab, const std::filesystem::path& results,
 /// The break points of all stress sweeps that were run. 1 if a promise is broken, or a method
 /// breaks that never should.
 int atlas(const Lab& lab, const std::filesystem::path& results, bool json);
-int check(const Lab& lab, const std::string& culler, bool json);
+/// The contract tests on one culler or chain, and its first wrong pixel, if there is one, as a
+/// picture in `output` (empty: out/check/NAME.png). 1 if a rule is broken.
+int check(const Lab& lab, const std::string& culler, const std::filesystem::path& output,
+          bool json);
+/// The contract tests on every culler, one row each. 1 if any breaks a rule.
+int check_all(const Lab& lab, bool json);
+/// The files of a new culler, family.variant, in the checkout that the present folder lies in: all
+/// of them or none. Throws InputError for names that are taken or cannot be, and outside of a
+/// checkout.
+int new_culler(const Lab& lab, const std::string& name);
 /// The answers of matrix smoke against the committed ones: 1 if any differ. `write` commits those in
 /// `results` instead.
 int baseline(const Lab& lab, const std::filesystem::path& results, bool write, bool json);

@@ -220,6 +220,25 @@ INSTANTIATE_TEST_SUITE_P(Contract, EveryWrongVariant,
                            return param.param.substr(param.param.find('.') + 1);
                          });
 
+TEST_P(EveryWrongVariant, IsShownAtItsFirstWrongPixel) {
+  Registry registry;
+  add_wrong_variants(registry);
+  std::optional<Witness> witness;
+  check_contract(registry, GetParam(), &witness);
+  ASSERT_TRUE(witness.has_value());
+  EXPECT_NE(witness->triangle, witness->instead);
+  EXPECT_FALSE(witness->scene.empty());
+  EXPECT_GE(witness->window_px.x, 0.0);
+  EXPECT_GE(witness->window_px.y, 0.0);
+  // Wrong pixels are vermillion in the picture, and nothing else is.
+  const Image& picture = witness->picture;
+  std::size_t marked = 0;
+  for (std::size_t i = 0; i + 2 < picture.rgb.size(); i += 3) {
+    marked += picture.rgb[i] == 213 && picture.rgb[i + 1] == 94 && picture.rgb[i + 2] == 0;
+  }
+  EXPECT_GT(marked, 0U);
+}
+
 struct Breach {
   Misdeed misdeed;
   std::string check;    // a word of the check that must fail
@@ -261,6 +280,16 @@ TEST(ContractCheck, FindsAnIncompleteDeclaration) {
   const ContractResult result = result_of(check_contract(registry, "misbehaving"), "info");
   EXPECT_FALSE(result.passed);
   EXPECT_NE(result.message.find("limits"), std::string::npos) << result.message;
+}
+
+TEST(ContractCheck, ShowsWhatMethodsLeaveOutThatPromiseNothing) {
+  std::optional<Witness> witness;
+  check_contract(all_cullers(), "frustum.wrong", &witness);
+  ASSERT_TRUE(witness.has_value());
+  EXPECT_GT(witness->wrong_px, 0U);
+  witness.reset();
+  check_contract(all_cullers(), "frustum.flat", &witness);
+  EXPECT_FALSE(witness.has_value()) << "nothing is wrong";
 }
 
 TEST(ContractCheck, RefusesAnUnknownCuller) {
