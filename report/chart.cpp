@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/glm.hpp>
 #include <sstream>
 
 #include "report/chart_axis.h"
 #include "report/chart_labels.h"
 #include "report/chart_parts.h"
+#include "report/dial_curves.h"
 #include "report/format.h"
 
 namespace vislab {
@@ -18,7 +20,7 @@ using namespace chart;
 // Everything in units of the drawing (1 unit = 1/4 mm as shown), y upwards.
 constexpr double panel_left[2] = {92.0, 414.0};
 constexpr double panel_width = 256.0;
-constexpr double y_title_distance[2] = {82.0, 46.0};  // from the panel's left
+constexpr double y_title_distance[2] = {82.0, 55.0};  // from the panel's left
 constexpr double usual_height = 360.0;                // more if the legend is long
 constexpr double usual_legend_height = 84.0;
 constexpr double top_margin = 22.0;
@@ -36,6 +38,10 @@ constexpr std::array<int, 4> oracle_shapes{6, 4, 8, 12};
 
 // With more methods than this only those on a hull and the anchors are named; the others are dots.
 constexpr std::size_t most_named = 24;
+constexpr std::size_t most_curves = 12;
+constexpr std::size_t longest_legend_text = 104;  // letters; the rest is cut
+constexpr double letter_width = 5.4;              // of a label's text
+constexpr int obstacles_a_segment = 10;           // of a curve
 constexpr const char* other_colour = "#9DB4C8";
 constexpr int other_shape = 7;
 
@@ -44,7 +50,16 @@ struct Mark {
   std::size_t number = 0;  // in charts and tables
   std::string colour;
   int shape = 0;
-  bool named = true;  // numbered, in the legend, with its interval
+  bool named = true;                // in the legend, with its interval
+  bool on_curve = false;            // the curve has an entry in the legend for all its marks
+  std::vector<std::string> labels;  // in the panels, beside the mark
+};
+
+/// A curve over a dial, as places in the list of marks.
+struct Curve {
+  DialCurve dial;
+  std::vector<std::size_t> marks;
+  std::vector<std::size_t> own;  // those that lie on no curve before this one
 };
 
 struct Panel {
@@ -53,7 +68,7 @@ struct Panel {
   ChartAxis axis;
 };
 
-std::vector<Mark> marks_of(const BlockSummary& block) {
+std::vector<Mark> marks_of(const BlockSummary& block, const ChartChoice& takes) {
   const std::vector<const CellSummary*> charted = charted_cells(block);
   std::vector<Mark> marks;
   std::size_t methods = 0;
@@ -61,7 +76,12 @@ std::vector<Mark> marks_of(const BlockSummary& block) {
   for (std::size_t i = 0; i < block.cells.size(); ++i) {
     const CellSummary& cell = block.cells[i];
     if (std::ranges::count(charted, &cell) == 0) continue;
-    Mark mark{&cell, i + 1, reference_colour, none_shape};
+    if (!cell.anchor && takes && !takes(cell)) continue;
+    Mark mark;
+    mark.cell = &cell;
+    mark.number = i + 1;
+    mark.colour = reference_colour;
+    mark.shape = none_shape;
     if (cell.anchor && cell.canonical == "none") {
       mark.shape = cell.replicate == 0 ? none_shape : none_again_shape;
     } else if (cell.anchor) {
@@ -76,10 +96,31 @@ std::vector<Mark> marks_of(const BlockSummary& block) {
   return marks;
 }
 
+/// "3, 5–8": numbers in ascending order.
+std::string number_list(std::vector<std::size_t> numbers) {
+  std::ranges::sort(numbers);
+  std::string list;
+  for (std::size_t i = 0; i < numbers.size();) {
+    std::size_t end = i + 1;
+    while (end < numbers.size() && numbers[end] == numbers[end - 1] + 1) ++end;
+    list += (list.empty() ? "" : ", ") + std::to_string(numbers[i]);
+    if (end - i > 1) list += (end - i == 2 ? ", " : "–") + std::to_string(numbers[end - 1]);
+    i = end;
+  }
+  return list;
+}
+
+std::string cut(std::string text) {
+  if (text.size() <= longest_legend_text) return text;
+  std::size_t end = longest_legend_text;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+  return text.substr(0, end) + "…";
+}
+
 class ChartWriter {
  public:
-  ChartWriter(const BlockSummary& block, std::ostream& out)
-      : out_(out), marks_(marks_of(block)), timed_(has_time_axis(block)) {
+  ChartWriter(const BlockSummary& block, const ChartChoice& takes, std::ostream& out)
+      : out_(out), marks_(marks_of(block, takes)), timed_(has_time_axis(block)) {
     std::vector<double> ends;
     for (const Mark& mark : marks_) {
       const Estimate x = x_of(*mark.cell);
@@ -89,21 +130,9 @@ class ChartWriter {
     }
     x_axis_ = positive_axis(ends);
     add_panels();
-    if (marks_.size() > most_named) name_hulls();
-    for (const Mark& mark : marks_) {
-      if (!mark.named) continue;
-      legend_marks_.push_back(mark);
-      legend_texts_.push_back(std::to_string(mark.number) + "  " + mark.cell->culler);
-    }
-    if (legend_marks_.size() < marks_.size()) {
-      legend_marks_.push_back({nullptr, 0, other_colour, other_shape, false});
-      legend_texts_.emplace_back("other methods: see the tables");
-    }
-    legend_texts_.emplace_back("Pareto hull of the methods");
-    if (none_x_ > 0.0) {
-      legend_texts_.emplace_back(timed_ ? "time of drawing everything" : "drawing everything");
-    }
-    legend_ = legend_for(legend_texts_);
+    add_curves();
+    name_marks();
+    add_legend();
     panel_bottom_ = legend_.height() + axis_height;
     chart_height_ = usual_height + std::max(0.0, legend_.height() - usual_legend_height);
     panel_height_ = chart_height_ - top_margin - panel_bottom_;
@@ -137,19 +166,79 @@ class ChartWriter {
     panels_ = {std::move(errors), std::move(over)};
   }
 
-  /// Leaves names to the anchors and to what lies on a hull.
-  void name_hulls() {
-    for (Mark& mark : marks_) mark.named = mark.cell->anchor;
-    for (std::size_t panel = 0; panel < panels_.size(); ++panel) {
-      for (const std::size_t i : hull_marks(panel)) marks_[i].named = true;
+  /// The longest first; a curve all of whose marks lie on others says nothing new.
+  void add_curves() {
+    std::vector<const CellSummary*> cells;
+    for (const Mark& mark : marks_) cells.push_back(mark.cell);
+    for (DialCurve& dial : dial_curves(cells)) {
+      if (curves_.size() == most_curves) break;
+      Curve curve;
+      curve.marks = dial.cells;
+      for (const std::size_t mark : curve.marks) {
+        if (!marks_[mark].on_curve) curve.own.push_back(mark);
+      }
+      if (curve.own.empty()) continue;
+      for (const std::size_t mark : curve.own) marks_[mark].on_curve = true;
+      curve.dial = std::move(dial);
+      curves_.push_back(std::move(curve));
     }
-    std::size_t methods = 0;
+  }
+
+  /// Which marks have a name, how they look, and what stands beside them. Where there are many, the
+  /// anchors, the curves and what lies on a hull have names.
+  void name_marks() {
+    if (marks_.size() > most_named) {
+      for (Mark& mark : marks_) mark.named = mark.cell->anchor || mark.on_curve;
+      for (std::size_t panel = 0; panel < panels_.size(); ++panel) {
+        for (const std::size_t i : hull_marks(panel)) marks_[i].named = true;
+      }
+    }
+    std::size_t looks = 0;
+    for (const Curve& curve : curves_) {
+      const Look look = method_look(looks++);
+      for (const std::size_t i : curve.own) {
+        marks_[i].colour = look.colour;
+        marks_[i].shape = look.shape;
+      }
+      for (const bool last : {false, true}) {
+        const std::size_t i = last ? curve.marks.back() : curve.marks.front();
+        const std::string& value = last ? curve.dial.values.back() : curve.dial.values.front();
+        marks_[i].labels.push_back("=" + value);
+      }
+    }
     for (Mark& mark : marks_) {
-      if (mark.cell->anchor) continue;
-      const Look look = mark.named ? method_look(methods++) : Look{other_colour, other_shape};
+      if (mark.named && !mark.on_curve) mark.labels.push_back(std::to_string(mark.number));
+      if (mark.cell->anchor || mark.on_curve) continue;
+      const Look look = mark.named ? method_look(looks++) : Look{other_colour, other_shape};
       mark.colour = look.colour;
       mark.shape = look.shape;
     }
+  }
+
+  void add_legend() {
+    bool others = false;
+    for (const Mark& mark : marks_) {
+      others = others || !mark.named;
+      if (!mark.named || mark.on_curve) continue;
+      legend_marks_.push_back(mark);
+      legend_texts_.push_back(cut(std::to_string(mark.number) + "  " + mark.cell->culler));
+    }
+    for (const Curve& curve : curves_) {
+      std::vector<std::size_t> numbers;
+      for (const std::size_t i : curve.own) numbers.push_back(marks_[i].number);
+      legend_marks_.push_back(marks_[curve.own.front()]);
+      legend_texts_.push_back(
+          cut(number_list(numbers) + "  " + curve.dial.name + " over " + curve.dial.parameter));
+    }
+    if (others) {
+      legend_marks_.push_back({nullptr, 0, other_colour, other_shape, false, false, {}});
+      legend_texts_.emplace_back("other methods: see the tables");
+    }
+    legend_texts_.emplace_back("Pareto hull of the methods");
+    if (none_x_ > 0.0) {
+      legend_texts_.emplace_back(timed_ ? "time of drawing everything" : "drawing everything");
+    }
+    legend_ = legend_for(legend_texts_);
   }
 
   double pixel_x(std::size_t panel, double value) const {
@@ -192,7 +281,8 @@ class ChartWriter {
       lines.push_back(step);
       write_line(step, hull_style);
     }
-    write_numbers(index, lines);
+    write_curves(index, lines);
+    write_labels(index, lines);
     out_ << "$points << END\n";
     for (std::size_t i = 0; i < marks_.size(); ++i) {
       out_ << x_[i].value << ' ' << panel.axis.position(panel.values[i]) << ' ' << x_[i].low << ' '
@@ -241,7 +331,27 @@ class ChartWriter {
     return steps;
   }
 
-  void write_numbers(std::size_t index, const std::vector<ChartBox>& lines) {
+  /// Joins the marks of each curve, and adds what labels should keep off.
+  void write_curves(std::size_t index, std::vector<ChartBox>& lines) {
+    for (const Curve& curve : curves_) {
+      const std::string& colour = marks_[curve.own.front()].colour;
+      for (std::size_t i = 1; i < curve.marks.size(); ++i) {
+        const glm::dvec2 from = place_of(index, curve.marks[i - 1]);
+        const glm::dvec2 to = place_of(index, curve.marks[i]);
+        write_line({from.x, from.y, to.x, to.y}, ("lw 1.4 lc rgb '" + colour + "'").c_str());
+        for (int k = 0; k < obstacles_a_segment; ++k) {
+          const glm::dvec2 at = glm::mix(from, to, (k + 0.5) / obstacles_a_segment);
+          lines.push_back({at.x, at.y, at.x, at.y});
+        }
+      }
+    }
+  }
+
+  glm::dvec2 place_of(std::size_t panel, std::size_t mark) const {
+    return {pixel_x(panel, x_[mark].value), pixel_y(panels_[panel], panels_[panel].values[mark])};
+  }
+
+  void write_labels(std::size_t index, const std::vector<ChartBox>& lines) {
     const Panel& panel = panels_[index];
     std::vector<LabelRequest> requests;
     std::vector<std::string> texts;
@@ -254,9 +364,11 @@ class ChartWriter {
       const double y = pixel_y(panel, panel.values[i]);
       obstacles.push_back({x - mark_radius, y - mark_radius, x + mark_radius, y + mark_radius});
       if (!marks_[i].named) continue;
-      texts.push_back(std::to_string(marks_[i].number));
-      requests.push_back(
-          {x, y, digit_width * static_cast<double>(texts.back().size()), label_height});
+      for (const std::string& label : marks_[i].labels) {
+        texts.push_back(label);
+        const double letter = marks_[i].on_curve ? letter_width : digit_width;
+        requests.push_back({x, y, letter * static_cast<double>(label.size()), label_height});
+      }
       obstacles.push_back(
           {pixel_x(index, x_[i].low), y - 1.0, pixel_x(index, x_[i].high), y + 1.0});
     }
@@ -330,6 +442,7 @@ class ChartWriter {
   double none_x_ = 0.0;
   ChartAxis x_axis_;
   std::vector<Panel> panels_;
+  std::vector<Curve> curves_;
   std::vector<Mark> legend_marks_;
   std::vector<std::string> legend_texts_;
   Legend legend_;
@@ -364,10 +477,11 @@ std::vector<std::size_t> pareto_hull(const std::vector<double>& x, const std::ve
   return hull;
 }
 
-std::string chart_script(const BlockSummary& block, const std::filesystem::path& file) {
+std::string chart_script(const BlockSummary& block, const std::filesystem::path& file,
+                         const ChartChoice& takes) {
   std::ostringstream script;
   script.precision(12);
-  ChartWriter writer(block, script);
+  ChartWriter writer(block, takes, script);
   script << "reset\nset terminal svg size " << chart_width << ',' << writer.height()
          << " noenhanced font 'Noto Sans,11' background '#FFFFFF'\nset output "
          << quoted(file.string()) << "\nset multiplot\n";

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -21,9 +22,14 @@ std::vector<const CellSummary*> charted_cells(const BlockSummary& block);
 /// the Pareto hull, by x. Of equal points the first stands for all.
 std::vector<std::size_t> pareto_hull(const std::vector<double>& x, const std::vector<double>& y);
 
+/// Which methods a chart shows; the anchors always stand in it. An empty function takes all.
+using ChartChoice = std::function<bool(const CellSummary& cell)>;
+
 /// gnuplot commands that draw the block's chart into `file` (SVG, 680 × 360 units, shown 17 cm wide
-/// and 9 cm high; higher if the legend is long). Without a common time axis the triangles submitted
-/// take its place.
-std::string chart_script(const BlockSummary& block, const std::filesystem::path& file);
+/// and 9 cm high; higher if the legend is long). Cells of one chain that differ in the value of one
+/// dial only are joined in the order of the dial, whose values stand at both ends. Without a common
+/// time axis the triangles submitted take its place.
+std::string chart_script(const BlockSummary& block, const std::filesystem::path& file,
+                         const ChartChoice& takes = {});
 
 }  // namespace vislab

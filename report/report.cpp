@@ -6,13 +6,15 @@
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 
 #include "common/scene/error.h"
 #include "report/cell_section.h"
 #include "report/chains_section.h"
 #include "report/chart.h"
 #include "report/errata_section.h"
+#include "report/family_section.h"
+#include "report/introduction_section.h"
 #include "report/method_fields.h"
 #include "report/persistence_section.h"
 #include "report/process.h"
@@ -35,10 +37,9 @@ constexpr const char* persistence_file = "persistence.json";
 /// The report's parts in their order; each is templates/NAME.md, and is left out where there is no
 /// such file.
 constexpr const char* parts[] = {
-    "summary",  "front",   "introduction", "floor",      "depth",  "persistence",
-    "families", "cells",   "surfaces",     "queries",    "scenes", "published",
-    "chains",   "model_size", "sweeps",    "claims",     "errata", "methods",
-    "metrics",  "measurement"};
+    "summary", "front",    "introduction", "floor",   "depth",     "persistence", "families",
+    "cells",   "surfaces", "queries",      "scenes",  "published", "chains",      "model_size",
+    "sweeps",  "claims",   "errata",       "methods", "metrics",   "measurement"};
 
 /// A folder for work in progress, gone with this object.
 class WorkFolder {
@@ -63,10 +64,12 @@ class WorkFolder {
   fs::path path_;
 };
 
-std::string read_template(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError("the report's template " + file.string() + " cannot be read");
-  return {std::istreambuf_iterator<char>(stream), {}};
+/// One name a line.
+std::vector<std::string> read_names(const fs::path& file) {
+  std::istringstream lines(read_template(file));
+  std::vector<std::string> names;
+  for (std::string name; lines >> name;) names.push_back(name);
+  return names;
 }
 
 void write_text(const fs::path& file, const std::string& text) {
@@ -77,8 +80,9 @@ void write_text(const fs::path& file, const std::string& text) {
 }
 
 void draw_charts(const ReportInput& input, const QueryFindings& queries,
-                 const std::vector<PersistenceRow>& persistence, const fs::path& work) {
-  std::string script;
+                 const std::vector<PersistenceRow>& persistence,
+                 const std::vector<FamilyChart>& of_families, const fs::path& work) {
+  std::string script = family_chart_script(of_families, input.cullers);
   const std::vector<const BlockSummary*> in_diagrams = queries.diagram_blocks();
   for (std::size_t i = 0; i < input.blocks.size(); ++i) {
     if (std::ranges::count(in_diagrams, &input.blocks[i]) > 0) continue;
@@ -99,7 +103,9 @@ void draw_charts(const ReportInput& input, const QueryFindings& queries,
 }
 
 void write_words(const ReportInput& input, const QueryFindings& queries,
-                 const std::vector<PersistenceRow>& persistence, const fs::path& templates,
+                 const std::vector<PersistenceRow>& persistence,
+                 const std::vector<std::string>& families,
+                 const std::vector<FamilyChart>& of_families, const fs::path& templates,
                  const fs::path& work) {
   const fs::path folder = templates / "templates";
   Fields fields =
@@ -109,6 +115,9 @@ void write_words(const ReportInput& input, const QueryFindings& queries,
   add_cell_fields(input, work, fields);
   add_chain_fields(input, fields);
   add_errata_fields(input, work, fields);
+  add_introduction_fields(input, queries.diagram_blocks(), work, fields);
+  add_family_fields(input, queries.diagram_blocks(), of_families, families, folder / "families",
+                    work, fields);
   cite_sources(read_template(templates / "bibliography.bib"), fields.lists["methods"]);
   std::string text;
   for (const std::string part : parts) {
@@ -121,27 +130,28 @@ void write_words(const ReportInput& input, const QueryFindings& queries,
 
 void make_page(const fs::path& templates, const fs::path& work) {
   const fs::path absolute = fs::absolute(templates);
-  run_program(
-      pandoc,
-      {"report.md", "--from=markdown-implicit_header_references", "--to=html5",
-       "--metadata-file=" + (absolute / "page.yaml").string(),
-       "--template=" + (absolute / "page.html").string(),
-       "--css=" + (absolute / "style.css").string(),
-       "--bibliography=" + (absolute / "bibliography.bib").string(), "--citeproc", "--mathml",
-       "--standalone", "--self-contained", "--toc", "--toc-depth=2", "--number-sections",
-       // Tables keep the widths that their content asks for.
-       "--columns=10000", "--output=index.html"},
-      work, time_limit);
+  run_program(pandoc,
+              {"report.md", "--from=markdown-implicit_header_references", "--to=html5",
+               "--metadata-file=" + (absolute / "page.yaml").string(),
+               "--template=" + (absolute / "page.html").string(),
+               "--css=" + (absolute / "style.css").string(),
+               "--bibliography=" + (absolute / "bibliography.bib").string(),
+               "--csl=" + (absolute / "numbered.csl").string(), "--citeproc", "--mathml",
+               "--standalone", "--self-contained", "--toc", "--toc-depth=2", "--number-sections",
+               // Tables keep the widths that their content asks for.
+               "--columns=10000", "--output=index.html"},
+              work, time_limit);
 }
 
 void print_page(const fs::path& work) {
-  run_program(chromium,
-              {"--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-               "--no-first-run", "--disable-extensions", "--disable-background-networking",
-               "--user-data-dir=" + (work / "browser").string(), "--no-pdf-header-footer",
-               "--print-to-pdf=" + (work / "report.pdf").string(),
-               "file://" + (work / "index.html").string()},
-              work, time_limit);
+  run_program(
+      chromium,
+      {"--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
+       "--disable-extensions", "--disable-background-networking",
+       "--user-data-dir=" + (work / "browser").string(), "--no-pdf-header-footer",
+       "--generate-pdf-document-outline", "--print-to-pdf=" + (work / "report.pdf").string(),
+       "file://" + (work / "index.html").string()},
+      work, time_limit);
   if (!fs::exists(work / "report.pdf")) {
     throw InputError("chromium ended without an error but printed no report.pdf");
   }
@@ -181,8 +191,12 @@ void write_report(const ReportInput& input, const fs::path& template_folder,
   const WorkFolder work;
   const QueryFindings queries = find_queries(input);
   const std::vector<PersistenceRow> persistence = persistence_rows(input, queries.diagram_blocks());
-  draw_charts(input, queries, persistence, work.path());
-  write_words(input, queries, persistence, template_folder, work.path());
+  const std::vector<std::string> families = measured_families(
+      input, read_names(template_folder / "templates" / "families" / "order.txt"));
+  const std::vector<FamilyChart> of_families =
+      family_charts(input, queries.diagram_blocks(), families);
+  draw_charts(input, queries, persistence, of_families, work.path());
+  write_words(input, queries, persistence, families, of_families, template_folder, work.path());
   if (!persistence.empty()) write_text(work.path() / persistence_file, to_json(persistence));
   make_page(template_folder, work.path());
   print_page(work.path());

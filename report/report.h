@@ -13,9 +13,16 @@
 #include "experiments/analysis/published.h"
 #include "experiments/analysis/summary.h"
 #include "experiments/show/depth_complexity_picture.h"
+#include "experiments/show/kinds_picture.h"
 #include "experiments/show/query_pictures.h"
 
 namespace vislab {
+
+/// A gap in the results.
+struct MissingCell {
+  std::string name;  // the culler's short name, or the block's title
+  std::string reason;
+};
 
 struct ReportInput {
   std::vector<BlockSummary> blocks;
@@ -57,6 +64,16 @@ struct ReportInput {
   /// The measured share of what lies in the frustum of a block's frames that is hidden. Throws
   /// InputError if its scene or its truth is no longer there. Empty function: no phase diagrams.
   std::function<double(const BlockSummary& block)> hidden_share;
+  /// Writes a picture of one frame of a block, every triangle in the colour of the kind of culling
+  /// that leaves it out, to `file` (PNG). Throws InputError if its scene or its truth is no longer
+  /// there. Empty function: no picture.
+  std::function<KindsPicture(const BlockSummary& block, const std::filesystem::path& file)>
+      kinds_picture;
+  /// What was to be measured on the block and is not in the results. Empty function: nothing is
+  /// known of that.
+  std::function<std::vector<MissingCell>(const BlockSummary& block)> missing_cells;
+  /// Blocks of which no cell is in the results though their matrix was run.
+  std::vector<MissingCell> missing_blocks;
   /// A cell's frame_ms by frame, each the median of its rounds. Throws InputError if the cell is no
   /// longer there. Empty function: no chart of them.
   std::function<std::vector<double>(const CellSummary& cell)> frame_times;

@@ -100,7 +100,8 @@ std::string what_is_missing(const CellSummary& cell) {
   return {};
 }
 
-void add_tables(const BlockSummary& block, const DeviceFits& fits, Fields& fields) {
+void add_tables(const ReportInput& input, const BlockSummary& block, const DeviceFits& fits,
+                Fields& fields) {
   auto& speed = fields.lists["speed"];
   auto& accuracy = fields.lists["accuracy"];
   auto& missing = fields.lists["not_measured"];
@@ -119,6 +120,16 @@ void add_tables(const BlockSummary& block, const DeviceFits& fits, Fields& field
       missing.push_back(std::move(entry));
     }
   }
+  if (input.missing_cells) {
+    for (const MissingCell& cell : input.missing_cells(block)) {
+      Fields entry;
+      entry.values["method"] = markdown_code(cell.name);
+      entry.values["what"] = "is missing";
+      entry.values["reason"] = markdown_text(cell.reason);
+      missing.push_back(std::move(entry));
+    }
+  }
+  fields.flag("has_not_measured", !missing.empty());
   fields.flag("has_speed", !speed.empty());
   fields.flag("has_accuracy", !accuracy.empty());
 }
@@ -208,7 +219,7 @@ Fields scene_fields(const ReportInput& input, std::size_t index, const DeviceFit
   fields.values["file"] = chart_file_name(index);
   fields.values["x_meaning"] =
       has_time_axis(block) ? "median time of a frame" : "triangles submitted per frame";
-  add_tables(block, fits, fields);
+  add_tables(input, block, fits, fields);
   add_pictures(input, block, index, folder, fields);
   return fields;
 }
@@ -355,6 +366,12 @@ Fields report_fields(const ReportInput& input, const std::string& verdict_templa
     noise.values["noise"] = block.drawn ? format_estimate(block.noise) : "nothing drawn";
     noises.push_back(std::move(noise));
     scenes.push_back(std::move(scene));
+  }
+  auto& gaps = fields.lists["missing_blocks"];
+  for (const MissingCell& block : input.missing_blocks) {
+    gaps.emplace_back();
+    gaps.back().values["block"] = markdown_text(block.name);
+    gaps.back().values["reason"] = markdown_text(block.reason);
   }
   fields.flag("has_floors", !floors.empty());
   fields.flag("has_diagrams", !in_diagrams.empty());

@@ -1,6 +1,8 @@
 #include "report/template.h"
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 
 #include "common/scene/error.h"
 
@@ -118,6 +120,12 @@ class Filler {
 
 std::string fill_template(std::string_view text, const Fields& fields, const std::string& where) {
   return Filler(text, where).fill(fields);
+}
+
+std::string read_template(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError("the report's template " + file.string() + " cannot be read");
+  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 }  // namespace vislab

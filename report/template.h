@@ -9,6 +9,7 @@
 // in as they are.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <string>
 #include <string_view>
@@ -30,5 +31,8 @@ struct Fields {
 /// The filled text. Throws InputError that names `where` and the line if the template is malformed
 /// or asks for a name that is not in the fields.
 std::string fill_template(std::string_view text, const Fields& fields, const std::string& where);
+
+/// The text of a template's file. Throws InputError that names it if it cannot be read.
+std::string read_template(const std::filesystem::path& file);
 
 }  // namespace vislab

@@ -11,9 +11,11 @@
 #include "experiments/show/depth_complexity_picture.h"
 #include "experiments/show/frame_picture.h"
 #include "experiments/show/hidden_share.h"
+#include "experiments/show/kinds_picture.h"
 #include "experiments/show/plan_picture.h"
 #include "experiments/show/query_pictures.h"
 #include "experiments/show/surface_pictures.h"
+#include "experiments/verbs/missing_cells.h"
 #include "experiments/verbs/present_results.h"
 #include "experiments/verbs/sweep_results.h"
 #include "experiments/verbs/verbs.h"
@@ -111,6 +113,12 @@ std::string stored_query_picture(const Lab& lab, StoredScenes& scenes, const Blo
   return place + ", on " + spec.text;
 }
 
+PlannedGaps gaps_of(const Lab& lab, const std::vector<JudgedCell>& cells) {
+  std::vector<const ResultCell*> present;
+  for (const JudgedCell& judged : cells) present.push_back(&judged.cell);
+  return find_planned_gaps(readable_matrices(lab.matrices, lab.cullers), present, lab.cullers);
+}
+
 }  // namespace
 
 int report(const Lab& lab, const std::filesystem::path& results,
@@ -148,6 +156,21 @@ int report(const Lab& lab, const std::filesystem::path& results,
                             QueryPicture picture, const std::filesystem::path& file) {
     return stored_query_picture(lab, scenes, block, shown, picture, file);
   };
+  input.kinds_picture = [&](const BlockSummary& block, const std::filesystem::path& file) {
+    return write_stored_kinds(results, lab.cullers, scenes, block, file);
+  };
+  const PlannedGaps gaps = gaps_of(lab, cells);
+  input.missing_cells = [&](const BlockSummary& block) {
+    std::vector<MissingCell> missing;
+    for (const CellSummary& cell : block.cells) {
+      const auto found = gaps.of_block_with.find(cell.id);
+      if (found == gaps.of_block_with.end()) continue;
+      for (const PlannedGap& gap : found->second) missing.push_back({gap.name, gap.reason});
+      break;
+    }
+    return missing;
+  };
+  for (const PlannedGap& gap : gaps.blocks) input.missing_blocks.push_back({gap.name, gap.reason});
   input.frame_times = [&](const CellSummary& cell) { return stored_frame_times(results, cell); };
   write_report(input, lab.report, output);
   std::cerr << "wrote " << (output / "index.html").string() << " and "

@@ -4,6 +4,7 @@
 
 #include "report/chart_axis.h"
 #include "report/chart_labels.h"
+#include "report/dial_curves.h"
 #include "tests/report/fabricated.h"
 
 namespace vislab {
@@ -98,6 +99,62 @@ TEST(Chart, OfManyMethodsOnlyTheAnchorsAndTheHullsAreNamed) {
 TEST(Chart, ScriptsSayHowManyPixelsZeroIsOf) {
   EXPECT_NE(chart_script(fabricated_block("made_up"), "x.svg").find("0 of\\n15,728,640"),
             std::string::npos);
+}
+
+CellSummary on_dial(const std::string& canonical, const std::string& name) {
+  CellSummary cell = fabricated_cell(name, 0.5, 0, 2.0);
+  cell.canonical = canonical;
+  return cell;
+}
+
+TEST(Chart, CellsThatDifferInOneDialLieOnACurveInItsOrder) {
+  const std::vector<CellSummary> cells{
+      on_dial("a.x[depth=16,test=box] > b.y[n=1]", "a.x[depth=16] > b.y"),
+      on_dial("a.x[depth=2,test=box] > b.y[n=1]", "a.x[depth=2] > b.y"),
+      on_dial("a.x[depth=2,test=sphere] > b.y[n=1]", "a.x[depth=2,test=sphere] > b.y"),
+      on_dial("a.x[depth=6,test=box] > b.y[n=1]", "a.x > b.y"),
+      on_dial("a.x[depth=6,test=box] > b.y[n=3]", "a.x > b.y[n=3]")};
+  std::vector<const CellSummary*> pointers;
+  for (const CellSummary& cell : cells) pointers.push_back(&cell);
+  const std::vector<DialCurve> curves = dial_curves(pointers);
+  ASSERT_EQ(curves.size(), 2U);  // none over test, which is no number
+  EXPECT_EQ(curves[0].name, "a.x > b.y");
+  EXPECT_EQ(curves[0].parameter, "depth");
+  EXPECT_EQ(curves[0].cells, (std::vector<std::size_t>{1, 3, 0}));
+  EXPECT_EQ(curves[0].values, (std::vector<std::string>{"2", "6", "16"}));
+  EXPECT_EQ(curves[1].parameter, "n");
+  EXPECT_EQ(curves[1].cells, (std::vector<std::size_t>{3, 4}));
+}
+
+TEST(Chart, AnchorsLieOnNoCurve) {
+  CellSummary one = on_dial("oracle[n=1]", "oracle");
+  CellSummary two = on_dial("oracle[n=2]", "oracle[n=2]");
+  one.anchor = two.anchor = true;
+  EXPECT_TRUE(dial_curves({&one, &two}).empty());
+}
+
+TEST(Chart, CurvesAreDrawnAndLabelledAtTheirEnds) {
+  BlockSummary block = fabricated_block("made_up");
+  for (const char* value : {"2", "4", "8"}) {
+    const std::string text = std::string("a.x[depth=") + value + "]";
+    block.cells.push_back(on_dial(text, text));
+  }
+  const std::string script = chart_script(block, "x.svg");
+  EXPECT_NE(script.find("5–7  a.x over depth"), std::string::npos);
+  EXPECT_NE(script.find("set label \"=2\""), std::string::npos);
+  EXPECT_EQ(script.find("set label \"=4\""), std::string::npos);
+  EXPECT_NE(script.find("set label \"=8\""), std::string::npos);
+}
+
+TEST(Chart, AChoiceLeavesMethodsOutButNoAnchors) {
+  BlockSummary block = fabricated_block("made_up");
+  block.cells.push_back(fabricated_cell("frustum.flat", 0.5, 0, 2.0));
+  block.cells.push_back(fabricated_cell("depth.hzb", 0.5, 0, 2.0));
+  const std::string script = chart_script(
+      block, "x.svg", [](const CellSummary& cell) { return cell.culler == "depth.hzb"; });
+  EXPECT_EQ(script.find("frustum.flat"), std::string::npos);
+  EXPECT_NE(script.find("6  depth.hzb"), std::string::npos);
+  EXPECT_NE(script.find("1  none"), std::string::npos);
 }
 
 }  // namespace

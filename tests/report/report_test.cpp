@@ -221,6 +221,91 @@ TEST_F(Report, MethodsStandWithTheirDeclarationAndCitations) {
   EXPECT_EQ(methods[0].lists["parameters"].size(), 1U);
 }
 
+CullerEntry declared(const std::string& name, const std::string& family) {
+  CullerEntry entry;
+  entry.info.name = name;
+  entry.info.family = family;
+  entry.info.summary = "Leaves out what " + name + " leaves out.";
+  entry.info.cost = "none to speak of";
+  entry.info.limits = "none known";
+  return entry;
+}
+
+TEST_F(Report, EveryMeasuredFamilyHasAChapterAlsoOneThatTheTemplatesDoNotKnow) {
+  Registry registry;
+  registry.add(declared("frustum.flat", "frustum"));
+  registry.add(declared("novel.way", "novel"));
+  registry.add(declared("novel.other_way", "novel"));
+  ReportInput input = fabricated_input();
+  input.cullers = &registry;
+  for (const char* culler : {"novel.way", "frustum.flat > novel.other_way"}) {
+    input.blocks[0].cells.push_back(fabricated_cell(culler, 0.4, 0, 3.0));
+  }
+  write_report(input, templates, folder_);
+  const std::string words = words_of(read(folder_ / "index.html"));
+  EXPECT_NE(words.find("View-frustum culling"), std::string::npos);
+  const std::size_t chapter = words.find("Methods of the family novel On 1 of the 1 scenes");
+  ASSERT_NE(chapter, std::string::npos);
+  EXPECT_NE(words.find("where novel.way saves 60 % of the frame", chapter), std::string::npos);
+  EXPECT_NE(words.find("Leaves out what novel.other_way leaves out.", chapter), std::string::npos);
+  EXPECT_NE(words.find("0 of 2", chapter), std::string::npos);  // no errors in either
+}
+
+TEST_F(Report, TheIntroductionSaysWhereEachRegisteredMethodStands) {
+  Registry registry;
+  CullerEntry entry = declared("novel.way", "novel");
+  entry.info.space = Space::image;
+  entry.info.stage = PipelineStage::raster;
+  entry.info.guarantee = Guarantee::approximate;
+  registry.add(entry);
+  ReportInput input = fabricated_input();
+  input.cullers = &registry;
+  input.kinds_picture = [](const BlockSummary&, const fs::path& file) {
+    std::ofstream(file) << "not quite a PNG";
+    return KindsPicture{"made_up_scene, orbit, frame 3", 4, 0.0};
+  };
+  write_report(input, templates, folder_);
+  const std::string words = words_of(read(folder_ / "index.html"));
+  EXPECT_NE(words.find("novel novel.way image raster objects approximate"), std::string::npos);
+  EXPECT_NE(words.find("made_up_scene, orbit, frame 3: why each triangle"), std::string::npos);
+  EXPECT_NE(words.find("Only 4 of the five kinds"), std::string::npos);
+}
+
+TEST_F(Report, GapsStandWithTheirReasons) {
+  ReportInput input = fabricated_input();
+  input.missing_cells = [](const BlockSummary& block) {
+    return std::vector<MissingCell>{{"frustum.bvh", "nobody measured it on " + block.scene}};
+  };
+  input.missing_blocks = {{"other_scene, 512x512, osmesa", "it was deleted"}};
+  write_report(input, templates, folder_);
+  const std::string words = words_of(read(folder_ / "index.html"));
+  EXPECT_NE(words.find("frustum.bvh is missing: nobody measured it on made_up_scene"),
+            std::string::npos);
+  EXPECT_NE(words.find("other_scene, 512x512, osmesa: nothing is here of it. it was deleted"),
+            std::string::npos);
+}
+
+TEST_F(Report, WithoutAnyAnchorTheRestStillStands) {
+  ReportInput input = fabricated_input();
+  std::erase_if(input.blocks[0].cells, [](const CellSummary& cell) { return cell.anchor; });
+  for (CellSummary& cell : input.blocks[0].cells) {
+    cell.against_none = cell.efficiency = Estimate::none();
+  }
+  input.blocks[0].noise = Estimate::none();
+  write_report(input, templates, folder_);
+  EXPECT_NE(words_of(read(folder_ / "index.html"))
+                .find("no method was both judged and timed against drawing everything"),
+            std::string::npos);
+}
+
+TEST_F(Report, SourcesAreNumberedInTheOrderOfTheText) {
+  write_report(fabricated_input(), templates, folder_);
+  const std::string html = read(folder_ / "index.html");
+  EXPECT_NE(html.find("[1]"), std::string::npos);
+  EXPECT_NE(html.find("[2]"), std::string::npos);
+  EXPECT_EQ(words_of(html).find("Zachmann 2012"), std::string::npos);
+}
+
 TEST_F(Report, TimesOfSeveralMachinesAreNotComparedAndThatIsSaid) {
   ReportInput input = fabricated_input();
   input.blocks[0].machines = {"one", "two"};

@@ -1,0 +1,104 @@
+#include "experiments/verbs/missing_cells.h"
+
+#include <set>
+#include <tuple>
+
+#include "common/scene/error.h"
+
+namespace vislab {
+namespace {
+
+/// What tells blocks apart, as their descriptions name it.
+using BlockName = std::tuple<std::string, std::string, int, int, int, std::string, std::uint64_t>;
+
+struct StoredBlock {
+  std::vector<std::string> ids;
+  std::set<std::string> chains;
+};
+
+BlockName name_of(const Block& block) {
+  return {block.scene,  block.path, block.viewport.width, block.viewport.height, block.frames,
+          block.device, block.seed};
+}
+
+/// The second name is of blocks that take as many frames as the path has.
+std::pair<BlockName, BlockName> names_of(const ResultCell& cell) {
+  BlockName name{cell.scene_source,
+                 cell.path_source,
+                 cell.key.viewport.width,
+                 cell.key.viewport.height,
+                 static_cast<int>(cell.frames.size()),
+                 cell.key.device,
+                 cell.key.seed};
+  BlockName all = name;
+  std::get<4>(all) = 0;
+  return {std::move(name), std::move(all)};
+}
+
+std::set<std::string> planned_chains(const Block& block) {
+  std::set<std::string> chains;
+  for (const BlockCuller& culler : block.cullers) chains.insert(culler.chain);
+  return chains;
+}
+
+}  // namespace
+
+PlannedGaps find_planned_gaps(const std::vector<Matrix>& matrices,
+                              const std::vector<const ResultCell*>& cells,
+                              const Registry& cullers) {
+  std::map<BlockName, StoredBlock> stored;
+  for (const ResultCell* cell : cells) {
+    const auto [name, all] = names_of(*cell);
+    for (const BlockName& one : {name, all}) {
+      stored[one].ids.push_back(cell->key.id());
+      stored[one].chains.insert(cell->key.chain);
+    }
+  }
+  PlannedGaps gaps;
+  std::set<std::pair<BlockName, std::string>> told;  // several matrices may plan the same
+  for (const Matrix& matrix : matrices) {
+    std::size_t planned = 0;
+    std::size_t present = 0;
+    for (const Block& block : matrix.blocks) {
+      const auto found = stored.find(name_of(block));
+      for (const std::string& chain : planned_chains(block)) {
+        ++planned;
+        if (found != stored.end() && found->second.chains.contains(chain)) ++present;
+      }
+    }
+    if (2 * present <= planned) continue;
+    const std::string reason = "no cell of it is in the results though the matrix " + matrix.name +
+                               " plans it; 'vislab run " + matrix.name +
+                               "' measures what is missing";
+    for (const Block& block : matrix.blocks) {
+      const BlockName name = name_of(block);
+      const auto found = stored.find(name);
+      if (found == stored.end()) {
+        if (told.emplace(name, "").second) gaps.blocks.push_back({block.title(), reason});
+        continue;
+      }
+      for (const std::string& chain : planned_chains(block)) {
+        if (found->second.chains.contains(chain) || !told.emplace(name, chain).second) continue;
+        for (const std::string& id : found->second.ids) {
+          gaps.of_block_with[id].push_back({cullers.short_name(chain), reason});
+        }
+      }
+    }
+  }
+  return gaps;
+}
+
+std::vector<Matrix> readable_matrices(const std::filesystem::path& folder,
+                                      const Registry& cullers) {
+  std::vector<Matrix> matrices;
+  for (const auto& [name, description] : list_matrices(folder)) {
+    try {
+      matrices.push_back(load_matrix(name, folder, cullers));
+    } catch (const InputError&) {
+      continue;  // 'vislab plan' says what is wrong with it
+    }
+  }
+  return matrices;
+}
+
+}  // namespace vislab

@@ -1,0 +1,36 @@
+// What matrices plan and a results folder does not hold.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/culler/registry.h"
+#include "experiments/matrix/matrix.h"
+#include "experiments/results/cell.h"
+
+namespace vislab {
+
+/// A chain or a whole block that a matrix plans, and that is not there.
+struct PlannedGap {
+  std::string name;  // the chain's short name, or the block's title
+  std::string reason;
+};
+
+struct PlannedGaps {
+  /// By the id of any cell that is there: what its block lacks.
+  std::map<std::string, std::vector<PlannedGap>> of_block_with;
+  std::vector<PlannedGap> blocks;  // of which nothing is there
+};
+
+/// Results do not say which matrices were run; one of which more than half of the cells are there
+/// counts as run, for it was, or was interrupted. `cells` are those that count. A cell belongs to a
+/// planned block if scene, path, size, frames, device and seed are the same.
+PlannedGaps find_planned_gaps(const std::vector<Matrix>& matrices,
+                              const std::vector<const ResultCell*>& cells, const Registry& cullers);
+
+/// All matrices of the folder; one that cannot be read says nothing of gaps.
+std::vector<Matrix> readable_matrices(const std::filesystem::path& folder, const Registry& cullers);
+
+}  // namespace vislab

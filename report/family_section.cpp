@@ -1,0 +1,349 @@
+#include "report/family_section.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "common/scene/error.h"
+#include "report/chart.h"
+#include "report/dial_curves.h"
+#include "report/finding.h"
+#include "report/format.h"
+
+namespace vislab {
+namespace {
+
+constexpr std::size_t charts_a_family = 2;
+constexpr std::size_t fewest_points = 2;
+
+std::string family_of_stage(const std::string& name, const Registry* cullers) {
+  if (cullers != nullptr) {
+    const auto found = cullers->entries().find(name);
+    if (found != cullers->entries().end()) return found->second.info.family;
+  }
+  return name.substr(0, name.find('.'));
+}
+
+bool is_left_out(const std::string& name, const Registry* cullers) {
+  if (cullers == nullptr) return false;
+  const auto found = cullers->entries().find(name);
+  return found != cullers->entries().end() && found->second.info.needs_truth;
+}
+
+/// "apartment, apartment_walk", with the size and device where several blocks share them.
+std::string place_of(const std::vector<BlockSummary>& blocks, const BlockSummary& block) {
+  const auto same = std::ranges::count_if(blocks, [&](const BlockSummary& other) {
+    return other.scene == block.scene && other.path == block.path;
+  });
+  std::string place = block.scene + (block.path.empty() ? "" : ", " + block.path);
+  if (same > 1) {
+    place += ", " + std::to_string(block.viewport.width) + " × " +
+             std::to_string(block.viewport.height) + ", " + block.device;
+  }
+  return markdown_text(place);
+}
+
+bool is_in(const std::vector<const BlockSummary*>& blocks, const BlockSummary& block) {
+  return std::ranges::find(blocks, &block) != blocks.end();
+}
+
+struct FamilyOn {
+  std::vector<const CellSummary*> cells;  // judged, no anchors
+  const CellSummary* best = nullptr;      // without errors: the fastest, or leaves the least over
+  const CellSummary* worst = nullptr;     // with the most false pixels
+  std::size_t erring = 0;
+};
+
+double worth(const BlockSummary& block, const CellSummary& cell) {
+  return block.drawn ? cell.against_none.value : cell.over;
+}
+
+FamilyOn family_on(const BlockSummary& block, const std::string& family, const Registry* cullers) {
+  FamilyOn found;
+  for (const CellSummary& cell : block.cells) {
+    if (cell.anchor || !cell.judged || cell.status != ResultCell::Status::done) continue;
+    if (family_of(cell, cullers) != family) continue;
+    found.cells.push_back(&cell);
+    if (cell.false_px > 0 && (found.worst == nullptr || cell.false_px > found.worst->false_px)) {
+      found.worst = &cell;
+    }
+    if (!is_free_of_errors(cell)) {
+      ++found.erring;
+      continue;
+    }
+    if (cell.guarantee == Guarantee::erroneous || !(worth(block, cell) >= 0.0)) continue;
+    if (found.best == nullptr || worth(block, cell) < worth(block, *found.best)) {
+      found.best = &cell;
+    }
+  }
+  return found;
+}
+
+Fields method_row(const CullerInfo& info) {
+  Fields row;
+  row.values["method"] = markdown_code(info.name);
+  row.values["idea"] = markdown_text(info.summary);
+  row.values["promise"] = markdown_text(to_string(info.guarantee));
+  row.values["place"] =
+      std::string(to_string(info.space)) + ", " + std::string(to_string(info.stage));
+  row.values["cost"] = markdown_text(info.cost);
+  row.values["fails"] = markdown_text(info.limits);
+  return row;
+}
+
+Fields best_row(const std::vector<BlockSummary>& blocks, const BlockSummary& block,
+                const FamilyOn& on) {
+  Fields row;
+  row.values["place"] = place_of(blocks, block);
+  row.values["best"] = on.best != nullptr ? markdown_code(on.best->culler) : "none";
+  const auto best = [&](auto&& text) { return on.best != nullptr ? text(*on.best) : "–"; };
+  row.values["against_none"] =
+      best([](const CellSummary& c) { return format_estimate(c.against_none); });
+  row.values["efficiency"] =
+      best([](const CellSummary& c) { return format_number(c.efficiency.value); });
+  row.values["over"] = best([](const CellSummary& c) { return format_number(c.over); });
+  row.values["recall"] = best([](const CellSummary& c) { return format_percent(c.recall); });
+  row.values["erring"] = std::to_string(on.erring) + " of " + std::to_string(on.cells.size());
+  row.values["worst"] = on.worst != nullptr
+                            ? markdown_code(on.worst->culler) + ", " +
+                                  format_percent(static_cast<double>(on.worst->false_px) /
+                                                 static_cast<double>(on.worst->pixels))
+                            : "–";
+  return row;
+}
+
+/// "`m` at 4 m".
+std::string break_of(const Sweep& sweep, const SweepVerdict& verdict) {
+  const std::string unit = sweep.dial.unit.empty() ? "" : " " + sweep.dial.unit;
+  std::string text = markdown_code(verdict.culler) + " at " +
+                     markdown_text(sweep.dial.texts[*verdict.break_point] + unit);
+  if (verdict.agreement == SweepVerdict::Agreement::differs) text += " (not as expected)";
+  return text;
+}
+
+/// One row for each sweep that a method of the family took part in.
+std::vector<Fields> break_rows(const ReportInput& input, const std::string& family) {
+  std::vector<Fields> rows;
+  for (const SweepResult& result : input.sweeps) {
+    std::string breaks;
+    std::string holds;
+    std::string open;
+    for (const SweepVerdict& verdict : result.verdicts) {
+      const std::vector<CullerSpec> chain = parse_chain(verdict.culler);
+      if (chain.empty() || !verdict.was_measured()) continue;
+      if (family_of_stage(chain.back().name, input.cullers) != family) continue;
+      std::string& list = verdict.break_point ? breaks : verdict.is_complete ? holds : open;
+      list += (list.empty() ? "" : "; ") + (verdict.break_point ? break_of(result.sweep, verdict)
+                                                                : markdown_code(verdict.culler));
+    }
+    if (breaks.empty() && holds.empty() && open.empty()) continue;
+    Fields row;
+    row.values["failure"] = markdown_text(result.sweep.failure);
+    row.values["sweep"] = markdown_text(result.sweep.name);
+    row.values["dial"] = markdown_text(result.sweep.dial.name);
+    row.values["breaks"] = breaks.empty() ? "–" : breaks;
+    row.values["holds"] = holds.empty() ? "–" : holds;
+    if (!open.empty()) row.values["holds"] += " (not all values were measured of " + open + ")";
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+/// On how many of the drawn blocks a method without errors saves time beyond the noise, and where
+/// most; empty if nothing was drawn.
+std::string saving_sentence(const std::vector<BlockSummary>& blocks,
+                            const std::vector<std::pair<const BlockSummary*, FamilyOn>>& on) {
+  std::size_t drawn = 0;
+  std::size_t saving = 0;
+  const BlockSummary* most_block = nullptr;
+  const CellSummary* most = nullptr;
+  for (const auto& [block, found] : on) {
+    if (!block->drawn || found.best == nullptr) continue;
+    ++drawn;
+    const Estimate& ratio = found.best->against_none;
+    const double bar = block->noise.measured() ? std::min(1.0, block->noise.low) : 1.0;
+    if (!(ratio.high < bar)) continue;
+    ++saving;
+    if (most == nullptr || ratio.value < most->against_none.value) {
+      most = found.best;
+      most_block = block;
+    }
+  }
+  if (drawn == 0) return {};
+  std::string text =
+      "On " + std::to_string(saving) + " of the " + std::to_string(drawn) +
+      " scenes and paths that were drawn, a method of this family saves time without "
+      "errors, beyond the noise";
+  if (most == nullptr) return text + ".";
+  return text + "; most on " + place_of(blocks, *most_block) + ", where " +
+         markdown_code(most->culler) + " saves " + format_percent(1.0 - most->against_none.value) +
+         " of the frame.";
+}
+
+/// Pictures of the family's best method on the block of its first chart, and of the method with the
+/// most false pixels anywhere.
+void add_pictures(const ReportInput& input, const BlockSummary* charted,
+                  const std::vector<std::pair<const BlockSummary*, FamilyOn>>& on,
+                  const std::string& family, const std::filesystem::path& work, Fields& fields) {
+  auto& pictures = fields.lists["pictures"];
+  auto& missing = fields.lists["pictures_missing"];
+  if (!input.picture) return;
+  std::vector<std::pair<const BlockSummary*, const CellSummary*>> wanted;
+  const BlockSummary* worst_block = nullptr;
+  const CellSummary* worst = nullptr;
+  for (const auto& [block, found] : on) {
+    if (block == charted && found.best != nullptr) wanted.emplace_back(block, found.best);
+    if (found.worst == nullptr) continue;
+    if (worst == nullptr || found.worst->false_px > worst->false_px) {
+      worst = found.worst;
+      worst_block = block;
+    }
+  }
+  if (worst != nullptr) wanted.emplace_back(worst_block, worst);
+  for (const auto& [block, cell] : wanted) {
+    const std::string file =
+        "family-" + family + "-" + std::to_string(pictures.size() + 1) + ".png";
+    Fields entry;
+    entry.values["method"] = markdown_code(cell->culler);
+    try {
+      entry.values["caption"] = markdown_text(input.picture(*block, *cell, work / file));
+      entry.values["file"] = file;
+      pictures.push_back(std::move(entry));
+    } catch (const InputError& error) {
+      entry.values["reason"] = markdown_text(error.what());
+      missing.push_back(std::move(entry));
+    }
+  }
+}
+
+Fields chapter_fields(const ReportInput& input, const std::vector<const BlockSummary*>& in_diagrams,
+                      const std::vector<FamilyChart>& charts, const std::string& family,
+                      const std::filesystem::path& work) {
+  Fields fields;
+  fields.values["family"] = markdown_text(family);
+  auto& methods = fields.lists["family_methods"];
+  if (input.cullers != nullptr) {
+    for (const auto& [name, entry] : input.cullers->entries()) {
+      if (entry.info.family == family) methods.push_back(method_row(entry.info));
+    }
+  }
+  fields.flag("has_family_methods", !methods.empty());
+  const BlockSummary* charted = nullptr;
+  auto& figures = fields.lists["family_charts"];
+  for (const FamilyChart& chart : charts) {
+    if (chart.family != family) continue;
+    if (charted == nullptr) charted = chart.block;
+    figures.emplace_back();
+    figures.back().values["place"] = place_of(input.blocks, *chart.block);
+    figures.back().values["file"] = chart.file;
+    figures.back().values["x_meaning"] =
+        has_time_axis(*chart.block) ? "median time of a frame" : "triangles submitted per frame";
+  }
+  std::vector<std::pair<const BlockSummary*, FamilyOn>> on;
+  auto& best = fields.lists["family_best"];
+  for (const BlockSummary& block : input.blocks) {
+    if (is_in(in_diagrams, block)) continue;
+    FamilyOn found = family_on(block, family, input.cullers);
+    if (found.cells.empty()) continue;
+    best.push_back(best_row(input.blocks, block, found));
+    on.emplace_back(&block, std::move(found));
+  }
+  fields.flag("has_family_best", !best.empty());
+  fields.values["saving"] = saving_sentence(input.blocks, on);
+  fields.lists["family_breaks"] = break_rows(input, family);
+  fields.flag("has_family_breaks", !fields.lists["family_breaks"].empty());
+  add_pictures(input, charted, on, family, work, fields);
+  return fields;
+}
+
+}  // namespace
+
+std::string family_of(const CellSummary& cell, const Registry* cullers) {
+  const std::vector<CullerSpec> chain = parse_chain(cell.canonical);
+  return chain.empty() ? "" : family_of_stage(chain.back().name, cullers);
+}
+
+std::vector<std::string> measured_families(const ReportInput& input,
+                                           const std::vector<std::string>& order) {
+  std::set<std::string> found;
+  for (const std::vector<BlockSummary>* blocks : {&input.blocks, &input.sweep_blocks}) {
+    for (const BlockSummary& block : *blocks) {
+      for (const CellSummary& cell : block.cells) {
+        if (cell.anchor) continue;
+        const std::vector<CullerSpec> chain = parse_chain(cell.canonical);
+        if (chain.empty() || is_left_out(chain.back().name, input.cullers)) continue;
+        found.insert(family_of_stage(chain.back().name, input.cullers));
+      }
+    }
+  }
+  std::vector<std::string> families;
+  for (const std::string& family : order) {
+    if (found.erase(family) > 0) families.push_back(family);
+  }
+  families.insert(families.end(), found.begin(), found.end());
+  return families;
+}
+
+std::vector<FamilyChart> family_charts(const ReportInput& input,
+                                       const std::vector<const BlockSummary*>& in_diagrams,
+                                       const std::vector<std::string>& families) {
+  std::vector<FamilyChart> charts;
+  for (const std::string& family : families) {
+    std::vector<std::pair<std::size_t, const BlockSummary*>> scored;
+    for (const BlockSummary& block : input.blocks) {
+      if (is_in(in_diagrams, block)) continue;
+      std::vector<const CellSummary*> cells;
+      for (const CellSummary* cell : charted_cells(block)) {
+        if (!cell->anchor && family_of(*cell, input.cullers) == family) cells.push_back(cell);
+      }
+      if (cells.size() < fewest_points) continue;
+      std::set<std::size_t> on_curves;
+      for (const DialCurve& curve : dial_curves(cells)) {
+        on_curves.insert(curve.cells.begin(), curve.cells.end());
+      }
+      scored.emplace_back(cells.size() + on_curves.size(), &block);
+    }
+    std::ranges::stable_sort(scored, std::greater<>{},
+                             [](const auto& entry) { return entry.first; });
+    std::set<std::string> scenes;
+    for (const auto& [score, block] : scored) {
+      if (scenes.size() == charts_a_family || !scenes.insert(block->scene).second) continue;
+      charts.push_back(
+          {family, block, "family-" + family + "-" + std::to_string(scenes.size()) + ".svg"});
+    }
+  }
+  return charts;
+}
+
+std::string family_chart_script(const std::vector<FamilyChart>& charts, const Registry* cullers) {
+  std::string script;
+  for (const FamilyChart& chart : charts) {
+    script += chart_script(*chart.block, chart.file, [&](const CellSummary& cell) {
+      return family_of(cell, cullers) == chart.family;
+    });
+  }
+  return script;
+}
+
+void add_family_fields(const ReportInput& input,
+                       const std::vector<const BlockSummary*>& in_diagrams,
+                       const std::vector<FamilyChart>& charts,
+                       const std::vector<std::string>& families,
+                       const std::filesystem::path& templates, const std::filesystem::path& work,
+                       Fields& fields) {
+  auto& chapters = fields.lists["families"];
+  const std::filesystem::path measured = templates / "measured.md";
+  for (const std::string& family : families) {
+    Fields chapter = chapter_fields(input, in_diagrams, charts, family, work);
+    chapter.values["measurements"] =
+        fill_template(read_template(measured), chapter, measured.string());
+    std::filesystem::path file = templates / (family + ".md");
+    if (!std::filesystem::exists(file)) file = templates / "generic.md";
+    Fields entry;
+    entry.values["chapter"] = fill_template(read_template(file), chapter, file.string());
+    chapters.push_back(std::move(entry));
+  }
+  fields.flag("has_families", !chapters.empty());
+}
+
+}  // namespace vislab

@@ -1,0 +1,95 @@
+#include "experiments/verbs/missing_cells.h"
+
+#include <gtest/gtest.h>
+
+#include "algorithms/all_cullers.h"
+
+namespace vislab {
+namespace {
+
+class MissingCells : public ::testing::Test {
+ protected:
+  MissingCells() {
+    register_all_cullers(registry_);
+    matrix_.name = "made_up";
+    Block block;
+    block.scene = "one_scene";
+    block.viewport = {64, 64};
+    block.frames = 2;
+    block.cullers = with_anchors(
+        {registry_.canonical("frustum.flat"), registry_.canonical("frustum.bvh[leaf_size=2]")},
+        registry_);
+    matrix_.blocks = {block, block};
+    matrix_.blocks[1].scene = "other_scene";
+  }
+
+  /// Everything that the matrix plans.
+  std::vector<ResultCell> everything() const {
+    std::vector<ResultCell> cells;
+    for (const Block& block : matrix_.blocks) {
+      for (const BlockCuller& culler : block.cullers) {
+        ResultCell cell;
+        cell.key.chain = culler.chain;
+        cell.key.replicate = culler.replicate;
+        cell.key.viewport = block.viewport;
+        cell.key.scene_hash = block.scene;
+        cell.scene_source = block.scene;
+        cell.frames.resize(2);
+        cells.push_back(cell);
+      }
+    }
+    return cells;
+  }
+
+  PlannedGaps gaps(const std::vector<ResultCell>& cells) const {
+    std::vector<const ResultCell*> pointers;
+    for (const ResultCell& cell : cells) pointers.push_back(&cell);
+    return find_planned_gaps({matrix_}, pointers, registry_);
+  }
+
+  Registry registry_;
+  Matrix matrix_;
+};
+
+TEST_F(MissingCells, NothingIsMissingWhereAllIsThere) {
+  const PlannedGaps found = gaps(everything());
+  EXPECT_TRUE(found.of_block_with.empty());
+  EXPECT_TRUE(found.blocks.empty());
+}
+
+TEST_F(MissingCells, ADeletedCellIsAGapOfItsBlock) {
+  std::vector<ResultCell> cells = everything();
+  const std::string chain = registry_.canonical("frustum.bvh[leaf_size=2]");
+  std::erase_if(cells, [&](const ResultCell& cell) {
+    return cell.key.chain == chain && cell.scene_source == "one_scene";
+  });
+  const PlannedGaps found = gaps(cells);
+  EXPECT_TRUE(found.blocks.empty());
+  const auto of_block = found.of_block_with.find(cells.front().key.id());
+  ASSERT_NE(of_block, found.of_block_with.end());
+  ASSERT_EQ(of_block->second.size(), 1U);
+  EXPECT_EQ(of_block->second[0].name, "frustum.bvh[leaf_size=2]");
+  EXPECT_NE(of_block->second[0].reason.find("vislab run made_up"), std::string::npos);
+  EXPECT_FALSE(found.of_block_with.contains(cells.back().key.id()));  // of the other scene
+}
+
+TEST_F(MissingCells, ABlockThatIsGoneIsNamed) {
+  std::vector<ResultCell> cells = everything();
+  matrix_.blocks.push_back(matrix_.blocks[0]);
+  matrix_.blocks[2].scene = "third_scene";
+  const PlannedGaps found = gaps(cells);
+  ASSERT_EQ(found.blocks.size(), 1U);
+  EXPECT_NE(found.blocks[0].name.find("third_scene"), std::string::npos);
+}
+
+TEST_F(MissingCells, OfAMatrixThatWasNotRunNothingIsMissing) {
+  std::vector<ResultCell> cells = everything();
+  cells.resize(3);
+  const PlannedGaps found = gaps(cells);
+  EXPECT_TRUE(found.of_block_with.empty());
+  EXPECT_TRUE(found.blocks.empty());
+  EXPECT_TRUE(gaps({}).blocks.empty());
+}
+
+}  // namespace
+}  // namespace vislab
