@@ -37,8 +37,8 @@ std::string over_text(const WrongVariant& variant) {
 std::string work_text(const WrongVariant& variant, const std::string& counter) {
   const Damage& work = variant.work;
   if (work.wrong == nullptr || counter.empty()) return {};
-  return markdown_code(counter) + " " + format_number(counter_of(*work.wrong, counter)) +
-         " a frame against " + format_number(counter_of(*work.right, counter)) + " of " +
+  return markdown_code(counter) + " " + format_number(counter_a_frame(*work.wrong, counter)) +
+         " a frame against " + format_number(counter_a_frame(*work.right, counter)) + " of " +
          markdown_code(work.right->culler) + ", on " + place_of(*work.block);
 }
 

@@ -214,7 +214,8 @@ void add_damage(const Damage& found, const std::string& counter, WrongVariant& v
   if (found.right == nullptr) return;
   const double over = found.wrong->over - found.right->over;
   if (!std::isnan(over)) keep_worst(found, over, variant.over, sizes.over);
-  const double work = counter_of(*found.wrong, counter) / counter_of(*found.right, counter);
+  const double work =
+      counter_a_frame(*found.wrong, counter) / counter_a_frame(*found.right, counter);
   if (std::isfinite(work)) keep_worst(found, work, variant.work, sizes.work);
 }
 
@@ -317,7 +318,7 @@ double wrong_share(const CellSummary& cell) {
                           : static_cast<double>(cell.wrong_px()) / static_cast<double>(cell.pixels);
 }
 
-double counter_of(const CellSummary& cell, const std::string& name) {
+double counter_a_frame(const CellSummary& cell, const std::string& name) {
   const auto found = cell.counters.find(name);
   return found == cell.counters.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
 }

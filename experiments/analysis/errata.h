@@ -65,7 +65,7 @@ struct WrongVariant {
 double wrong_share(const CellSummary& cell);
 
 /// A counter's value a frame; NaN if the cell does not have it.
-double counter_of(const CellSummary& cell, const std::string& name);
+double counter_a_frame(const CellSummary& cell, const std::string& name);
 
 /// Every variant that the registry declares erroneous, measured or not, by name: cullers that are
 /// always so, once for each choice of their parameter `error` if they have it; what errata name
