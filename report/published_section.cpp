@@ -15,7 +15,8 @@ std::string place_of(const PublishedRow& row, const OwnFigure& own) {
 
 std::string own_text(const PublishedRow& row, const OwnFigure& own) {
   if (own.cell == nullptr) return "not run";
-  return row.is_share() ? format_percent(own.ratio.value) : format_estimate(own.ratio);
+  if (row.is_share()) return format_percent(own.ratio.value);
+  return row.compares ? format_estimate(own.ratio) : format_number(own.ratio.value);
 }
 
 /// "`a` against `b`, frame_ms".
@@ -29,6 +30,8 @@ std::string method_text(const PublishedRow& row) {
       return method + ", (update_us + cull_us) ÷ frame_ms";
     case PublishedRow::Metric::cull_us:
       return compared + ", cull_us";
+    case PublishedRow::Metric::named:
+      return (row.compares ? compared : method) + ", " + markdown_text(row.metric_name);
     case PublishedRow::Metric::frame_ms:
       break;
   }

@@ -25,51 +25,52 @@ double frames_a_second(const toml::table& table, std::string_view key, const std
   return *value;
 }
 
-PublishedRow::Metric metric_of(const toml::table& table, const std::string& file) {
+PublishedRow::Metric metric_of(const std::string& name) {
   using enum PublishedRow::Metric;
-  const auto name = value_of<std::string>(table, "metric", "a text", file).value_or("frame_ms");
-  std::vector<std::string> known;
-  for (const auto& [text, metric] : {std::pair{"frame_ms", frame_ms},
-                                     {"cull_us", cull_us},
-                                     {"culled", culled},
-                                     {"decision_share", decision_share}}) {
-    if (name == text) return metric;
-    known.emplace_back(text);
-  }
-  throw InputError(place(file, table) + ": " +
-                   unknown_name("metric of a [[row]]", name, known).what());
+  if (name == "frame_ms") return frame_ms;
+  if (name == "cull_us") return cull_us;
+  if (name == "culled") return culled;
+  if (name == "decision_share") return decision_share;
+  return named;
 }
 
-PublishedRow read_row(const toml::table& table, const Registry& registry, const std::string& file) {
-  refuse_unknown_keys(table,
-                      {"what", "table", "without_fps", "with_fps", "published", "metric", "scene",
-                       "path", "culler", "against", "cannot_be_told"},
-                      "[[row]]", file);
-  PublishedRow row;
-  row.what = text_of(table, "what", file);
-  row.table = text_of(table, "table", file);
-  if (const auto published = value_of<std::string>(table, "published", "a text", file)) {
-    row.published = *published;
-  } else {
-    row.without_fps = frames_a_second(table, "without_fps", file);
-    row.with_fps = frames_a_second(table, "with_fps", file);
+bool is_time(PublishedRow::Metric metric) {
+  return metric == PublishedRow::Metric::frame_ms || metric == PublishedRow::Metric::cull_us;
+}
+
+/// Of the row, or what the tolerance of rows in frames a second makes of them.
+void read_accept(const toml::table& table, double tolerance, const std::string& file,
+                 PublishedRow& row) {
+  const toml::node* const node = table.get("accept");
+  if (node == nullptr && row.published.empty() && tolerance > 0.0) {
+    row.accept = {row.ratio() / tolerance, row.ratio() * tolerance};
+    return;
   }
-  if (const auto why = value_of<std::string>(table, "cannot_be_told", "a text", file)) {
-    for (const char* key : {"metric", "scene", "path", "culler", "against"}) {
-      if (table.contains(key)) {
-        throw InputError(place(file, table) + ": a row that cannot be told has no " + key);
-      }
+  const toml::array* const bounds = node == nullptr ? nullptr : node->as_array();
+  if (bounds != nullptr && bounds->size() == 2) {
+    const auto low = (*bounds)[0].value<double>();
+    const auto high = (*bounds)[1].value<double>();
+    if (low && high && *low <= *high) {
+      row.accept = {*low, *high};
+      return;
     }
-    row.cannot_be_told = *why;
-    return row;
   }
-  row.metric = metric_of(table, file);
-  if (row.is_share() && (row.published.empty() || table.contains("against"))) {
-    throw InputError(place(file, table) +
-                     ": a share has `published`, and nothing that it is against");
-  }
+  throw InputError(place(file, table) +
+                   ": accept must be [low, high], from where to where our figure confirms the "
+                   "claim, such as [1.0, inf]");
+}
+
+/// What stands for the claim here.
+void read_place(const toml::table& table, const Registry& registry, const std::string& file,
+                PublishedRow& row) {
+  row.metric_name = value_of<std::string>(table, "metric", "a text", file).value_or("frame_ms");
+  row.metric = metric_of(row.metric_name);
   row.scene = text_of(table, "scene", file);
   row.path = value_of<std::string>(table, "path", "a text", file).value_or("");
+  if (const auto device = value_of<std::string>(table, "device", "a text", file)) {
+    row.device = canonical_device(*device, table.get("device"), file);
+  }
+  row.compares = is_time(row.metric) || table.contains("against");
   const std::string culler = text_of(table, "culler", file);
   const std::string against =
       value_of<std::string>(table, "against", "a text", file).value_or("none");
@@ -81,46 +82,110 @@ PublishedRow read_row(const toml::table& table, const Registry& registry, const 
   } catch (const InputError& error) {
     throw InputError(place(file, table) + ": " + error.what());
   }
+}
+
+PublishedRow read_row(const toml::table& table, double tolerance, const Registry& registry,
+                      const std::string& file) {
+  refuse_unknown_keys(table,
+                      {"what", "table", "without_fps", "with_fps", "published", "accept", "metric",
+                       "scene", "path", "device", "culler", "against", "cannot_be_told"},
+                      "[[row]]", file);
+  PublishedRow row;
+  row.what = text_of(table, "what", file);
+  row.table = text_of(table, "table", file);
+  if (const auto published = value_of<std::string>(table, "published", "a text", file)) {
+    row.published = *published;
+  } else {
+    row.without_fps = frames_a_second(table, "without_fps", file);
+    row.with_fps = frames_a_second(table, "with_fps", file);
+  }
+  if (const auto why = value_of<std::string>(table, "cannot_be_told", "a text", file)) {
+    for (const char* key : {"accept", "metric", "scene", "path", "device", "culler", "against"}) {
+      if (table.contains(key)) {
+        throw InputError(place(file, table) + ": a row that cannot be told has no " + key);
+      }
+    }
+    row.cannot_be_told = *why;
+    return row;
+  }
+  read_place(table, registry, file, row);
+  read_accept(table, tolerance, file, row);
   return row;
 }
 
 PublishedFigures read_figures(const fs::path& path, const Registry& registry) {
   const std::string file = path.string();
   const toml::table root = parse_file(path);
-  refuse_unknown_keys(root, {"title", "source", "note", "row"}, "published figures", file);
+  refuse_unknown_keys(root, {"title", "source", "note", "tolerance", "stand_ins", "row"},
+                      "published figures", file);
   PublishedFigures figures;
   figures.title = text_of(root, "title", file);
   figures.source = text_of(root, "source", file);
   figures.note = value_of<std::string>(root, "note", "a text", file).value_or("");
+  const double tolerance = value_of<double>(root, "tolerance", "a factor", file).value_or(0.0);
+  if (root.contains("tolerance") && !(tolerance >= 1.0)) {
+    throw InputError(place(file, *root.get("tolerance")) + ": tolerance must be a factor from 1");
+  }
+  const toml::node* const stand_ins = root.get("stand_ins");
+  if (stand_ins != nullptr && !stand_ins->is_table()) {
+    throw InputError(place(file, *stand_ins) + ": write [stand_ins]");
+  }
   const toml::array* const rows = tables(root, "row", file);
   if (rows == nullptr) throw InputError(file + ": there is no [[row]]");
   for (const toml::node& row : *rows) {
-    figures.rows.push_back(read_row(*row.as_table(), registry, file));
+    figures.rows.push_back(read_row(*row.as_table(), tolerance, registry, file));
+    if (stand_ins == nullptr) continue;
+    const auto stand_in =
+        value_of<std::string>(*stand_ins->as_table(), figures.rows.back().scene, "a text", file);
+    figures.rows.back().stand_in = stand_in.value_or("");
   }
   return figures;
 }
 
-/// What the ratio is made of: ÷ none's for frame_ms, in µs for cull_us.
-const Estimate& measure_of(const CellSummary& cell, PublishedRow::Metric metric) {
-  return metric == PublishedRow::Metric::cull_us ? cell.cull_us.median : cell.against_none;
-}
-
-/// NaN if it was not measured.
-double share_of(const CellSummary& cell, const CellSummary& none, PublishedRow::Metric metric) {
-  if (metric == PublishedRow::Metric::culled) {
-    return 1.0 - cell.submitted_triangles / none.submitted_triangles;
+/// The figure that the row is about, of one method: ÷ none's for frame_ms, in µs for cull_us.
+Estimate measure_of(const CellSummary& cell, const CellSummary& none, const PublishedRow& row) {
+  const auto exact = [](double value) { return Estimate{value, value, value}; };
+  switch (row.metric) {
+    case PublishedRow::Metric::frame_ms:
+      return cell.against_none;
+    case PublishedRow::Metric::cull_us:
+      return cell.cull_us.median;
+    case PublishedRow::Metric::culled:
+      return exact(1.0 - cell.submitted_triangles / none.submitted_triangles);
+    case PublishedRow::Metric::decision_share:
+      return exact((cell.update_us.median.value + cell.cull_us.median.value) / 1e3 /
+                   cell.frame_ms.median.value);
+    case PublishedRow::Metric::named:
+      break;
   }
-  return (cell.update_us.median.value + cell.cull_us.median.value) / 1e3 /
-         cell.frame_ms.median.value;
+  return exact(cell.metric(row.metric_name));
 }
 
-const CellSummary* find_cell(const BlockSummary& block, const std::string& chain,
-                             PublishedRow::Metric metric) {
+const CellSummary* find_cell(const BlockSummary& block, const std::string& chain) {
   const auto found = std::ranges::find_if(block.cells, [&](const CellSummary& cell) {
     return cell.canonical == chain && cell.replicate == 0 &&
-           cell.status == ResultCell::Status::done && measure_of(cell, metric).measured();
+           cell.status == ResultCell::Status::done;
   });
   return found == block.cells.end() ? nullptr : &*found;
+}
+
+Estimate quotient(const Estimate& above, const Estimate& below) {
+  return {above.value / below.value, above.low / below.high, above.high / below.low};
+}
+
+/// NaN if a part of it was not measured.
+Estimate figure_of(const BlockSummary& block, const CellSummary& cell, const PublishedRow& row) {
+  const CellSummary* const none = find_cell(block, "none");
+  const CellSummary* const against = find_cell(block, row.against);
+  if (none == nullptr || against == nullptr) return Estimate::none();
+  const Estimate own = measure_of(cell, *none, row);
+  if (!row.compares || !own.measured()) return own;
+  if (row.metric == PublishedRow::Metric::frame_ms && against == none) {
+    // none's ratio to itself is 1, without an interval.
+    return {1.0 / own.value, 1.0 / own.high, 1.0 / own.low};
+  }
+  const Estimate other = measure_of(*against, *none, row);
+  return is_time(row.metric) ? quotient(other, own) : quotient(own, other);
 }
 
 /// Orders the blocks that may stand for a row: the more the better.
@@ -146,28 +211,45 @@ OwnFigure own_figure(const PublishedRow& row, const std::vector<BlockSummary>& b
   OwnFigure own;
   if (!row.cannot_be_told.empty()) return own;
   for (const BlockSummary& block : blocks) {
-    if (!block.device_models.empty()) continue;  // its times are nobody's to compare with
+    // The times of a modelled device are nobody's to compare with who does not ask for it.
+    if (row.device.empty() ? !block.device_models.empty() : block.device != row.device) continue;
     if (block.scene != row.scene || (!row.path.empty() && block.path != row.path)) continue;
-    const CellSummary* const cell = find_cell(block, row.culler, row.metric);
-    const CellSummary* const against = find_cell(block, row.against, row.metric);
-    if (cell == nullptr || against == nullptr) continue;
+    const CellSummary* const cell = find_cell(block, row.culler);
+    if (cell == nullptr || find_cell(block, row.against) == nullptr) continue;
     if (own.block != nullptr && weight_of(block) <= weight_of(*own.block)) continue;
-    if (row.is_share()) {
-      const double share = share_of(*cell, *against, row.metric);
-      own = {&block, cell, {share, share, share}};
-      continue;
-    }
-    const Estimate& method = measure_of(*cell, row.metric);
-    const Estimate& other = measure_of(*against, row.metric);
-    // none's ratio to itself is 1, without an interval.
-    const bool paired =
-        row.metric == PublishedRow::Metric::frame_ms && against->canonical == "none";
-    own = {&block, cell,
-           paired ? Estimate{1.0 / method.value, 1.0 / method.high, 1.0 / method.low}
-                  : Estimate{other.value / method.value, other.low / method.high,
-                             other.high / method.low}};
+    const Estimate figure = figure_of(block, *cell, row);
+    // Times that were not taken are no figure; 0 against 0 is one that says nothing.
+    if (is_time(row.metric) && !figure.measured()) continue;
+    own = {&block, cell, figure};
   }
   return own;
+}
+
+std::string to_string(ClaimVerdict verdict) {
+  switch (verdict) {
+    case ClaimVerdict::confirmed:
+      return "confirmed";
+    case ClaimVerdict::not_confirmed:
+      return "not confirmed";
+    case ClaimVerdict::cannot_be_told:
+      return "cannot be told";
+    case ClaimVerdict::not_run:
+      break;
+  }
+  return "not run";
+}
+
+ClaimVerdict verdict_of(const PublishedRow& row, const OwnFigure& own) {
+  if (!row.cannot_be_told.empty()) return ClaimVerdict::cannot_be_told;
+  if (own.cell == nullptr) return ClaimVerdict::not_run;
+  const Estimate& figure = own.ratio;
+  if (figure.low >= row.accept.low && figure.high <= row.accept.high) {
+    return ClaimVerdict::confirmed;
+  }
+  if (figure.high < row.accept.low || figure.low > row.accept.high) {
+    return ClaimVerdict::not_confirmed;
+  }
+  return ClaimVerdict::cannot_be_told;
 }
 
 }  // namespace vislab

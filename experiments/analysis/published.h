@@ -3,24 +3,36 @@
 //   title = "Thesis, tables 5.2 to 5.9"
 //   source = "Kowalka 2016"
 //   note = "…"                     what is known to be odd about the figures
+//   tolerance = 1.5                of rows in frames a second: by which factor ours may be off
+//   [stand_ins]                    what our scenes stand for, by name
+//   hares_546 = "…"
 //   [[row]]
 //   what = "mixed scene, camera moving"
 //   table = "5.2"
 //   without_fps = 58.92            frames a second without culling (or of what `against` stands
 //   with_fps = 66.21               for), and with; or instead of both
-//   published = "1.4, at most 3"   the ratio without ÷ with as the source words it
-//   metric = "frame_ms"            what stands for it here: a ratio of frame_ms or of cull_us; or
-//                                  a share: culled (of all triangles), or decision_share (of
-//                                  frame_ms that goes into update and cull)
+//   published = "1.4, at most 3"   the claim as the source words it
+//   accept = [1.0, 3.0]            and what of ours confirms it; may be inf
+//   metric = "frame_ms"            what stands for it here. frame_ms, cull_us: how many times as
+//                                  fast as `against`; culled: share of all triangles;
+//                                  decision_share: of frame_ms, what goes into update and cull; or
+//                                  any metric or counter of a cell
 //   scene = "mixed"                of this scene, path ("" or left out: any path)
 //   path = "mixed_moving"
+//   device = "modelled[…]"         only there; left out: any real device
 //   culler = "frustum.two_step"    and method
-//   against = "none"               what it is compared with; none if left out. Not for shares
-//   cannot_be_told = "…"           instead of metric, scene, path, culler and against: why nothing
-//                                  here can stand beside the figure
+//   against = "none"               what it is compared with. Left out: none for times; all other
+//                                  metrics stand for themselves, and are divided by that of
+//                                  `against` if there is one
+//   cannot_be_told = "…"           instead of accept, metric, scene, path, device, culler and
+//                                  against: why nothing here can stand beside the figure
+//
+// The rule: a claim is confirmed where the whole interval of our figure lies in `accept`, not
+// confirmed where all of it lies outside, and cannot be told where it does both.
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -36,10 +48,21 @@ struct PublishedRow {
   std::string culler, against;                        // canonical
   std::string short_culler = {}, short_against = {};  // the same as tables show them
   std::string published = {};                         // instead of frames a second
-  enum class Metric { frame_ms, cull_us, culled, decision_share } metric = Metric::frame_ms;
+  enum class Metric { frame_ms, cull_us, culled, decision_share, named } metric = Metric::frame_ms;
   std::string cannot_be_told = {};  // if not empty, the row has no figure of ours
+  std::string metric_name = {};     // of Metric::named, as CellSummary::metric has it
+  std::string device = {};          // as parse_device writes it; "": any real one
+  std::string stand_in = {};        // what the scene stands for; "" if that needs no words
+  /// Our figures from `low` to `high` confirm the claim.
+  struct {
+    double low = 0.0, high = std::numeric_limits<double>::infinity();
+  } accept = {};
+  /// Is our figure a quotient of two methods'? (Else it is the metric itself.)
+  bool compares = true;
 
-  bool is_share() const { return metric == Metric::culled || metric == Metric::decision_share; }
+  bool is_share() const {
+    return !compares && (metric == Metric::culled || metric == Metric::decision_share);
+  }
 
   /// How many times as many frames a second as without; not with `published`.
   double ratio() const { return with_fps / without_fps; }
@@ -59,14 +82,22 @@ std::vector<PublishedFigures> load_published(const std::filesystem::path& folder
 struct OwnFigure {
   const BlockSummary* block = nullptr;
   const CellSummary* cell = nullptr;
-  /// A share, without an interval; or the row's metric of `against` / that of the culler. frame_ms
-  /// against none is paired by frame and round; else it is the quotient of two such ratios, or of
-  /// the medians of cull_us, with the widest interval that they allow.
+  /// Our figure (see the head of this file). frame_ms against none is paired by frame and round;
+  /// other quotients of times are those of two such ratios, or of the medians of cull_us, with the
+  /// widest interval that they allow; whatever is no time has no interval. NaN for 0 against 0.
   Estimate ratio = Estimate::none();
 };
 
 /// Of several blocks of the row's scene and path the one with the most frames, then with the most
 /// pixels, then the first.
 OwnFigure own_figure(const PublishedRow& row, const std::vector<BlockSummary>& blocks);
+
+enum class ClaimVerdict { confirmed, not_confirmed, cannot_be_told, not_run };
+
+/// "confirmed", "not confirmed", "cannot be told", "not run".
+std::string to_string(ClaimVerdict verdict);
+
+/// By the rule at the head of this file; `own` is the row's.
+ClaimVerdict verdict_of(const PublishedRow& row, const OwnFigure& own);
 
 }  // namespace vislab

@@ -24,6 +24,12 @@ struct OwnPaths {
   std::vector<std::string> paths;
 };
 
+/// Chains that only the blocks that fit have, besides those of the lists.
+struct OwnCullers {
+  Pattern pattern;
+  std::vector<std::string> cullers, optional_cullers;
+};
+
 struct Adjustment {
   Pattern pattern;
   std::optional<int> frames, rounds;
@@ -40,6 +46,7 @@ struct Description {
   std::vector<int> frames{60};
   std::vector<std::string> devices;  // canonical; empty: the one of `pass`
   std::vector<OwnPaths> own_paths;
+  std::vector<OwnCullers> own_cullers;
   std::vector<Pattern> excluded;
   std::vector<Adjustment> adjusted;
 };
@@ -83,16 +90,22 @@ void read_lists(const toml::table& lists, Description& description, const std::s
   }
 }
 
-Pattern read_pattern(const toml::table& table, const std::string& file) {
+/// All but the culler.
+Pattern read_place(const toml::table& table, const std::string& file) {
   Pattern pattern;
   const auto read = [&](std::string_view key, std::string& into) {
     if (auto text = value_of<std::string>(table, key, "a text", file)) into = *text;
   };
-  read("culler", pattern.culler);
   read("scene", pattern.scene);
   read("path", pattern.path);
   read("resolution", pattern.resolution);
   read("device", pattern.device);
+  return pattern;
+}
+
+Pattern read_pattern(const toml::table& table, const std::string& file) {
+  Pattern pattern = read_place(table, file);
+  if (auto text = value_of<std::string>(table, "culler", "a text", file)) pattern.culler = *text;
   return pattern;
 }
 
@@ -109,7 +122,8 @@ fs::path find_matrix(const std::string& name_or_file, const fs::path& folder) {
 Description read_description(const fs::path& path, const fs::path& folder, int depth) {
   const std::string file = path.string();
   const toml::table root = parse_file(path);
-  std::vector<std::string> known{"description", "extends", "lists", "paths", "exclude", "adjust"};
+  std::vector<std::string> known{"description", "extends", "lists", "paths",
+                                 "cullers",     "exclude", "adjust"};
   known.insert(known.end(), pass_keys.begin(), pass_keys.end());
   refuse_unknown_keys(root, known, "a matrix", file);
   Description description;
@@ -139,6 +153,24 @@ Description read_description(const fs::path& path, const fs::path& folder, int d
         throw InputError(place(file, node) + ": [[paths]] needs a scene and a list of paths");
       }
       description.own_paths.push_back({*scene, text_list(*paths, "path", file)});
+    }
+  }
+  if (const toml::array* own_cullers = tables(root, "cullers", file)) {
+    for (const toml::node& node : *own_cullers) {
+      const toml::table& table = *node.as_table();
+      refuse_unknown_keys(table,
+                          {"scene", "path", "resolution", "device", "culler", "optional_culler"},
+                          "[[cullers]]", file);
+      OwnCullers own;
+      if (const toml::node* n = table.get("culler")) own.cullers = text_list(*n, "culler", file);
+      if (const toml::node* n = table.get("optional_culler")) {
+        own.optional_cullers = text_list(*n, "optional_culler", file);
+      }
+      if (own.cullers.empty() && own.optional_cullers.empty()) {
+        throw InputError(place(file, node) + ": [[cullers]] needs a list of cullers");
+      }
+      own.pattern = read_place(table, file);
+      description.own_cullers.push_back(std::move(own));
     }
   }
   if (const toml::array* excluded = tables(root, "exclude", file)) {
@@ -181,14 +213,16 @@ struct WantedChain {
   std::string written, canonical;
 };
 
-/// Those of the lists; optional ones that the build does not have go to `absent`.
-std::vector<WantedChain> chains_of(const Description& description, const Registry& registry,
-                                   const std::string& file, std::vector<std::string>& absent) {
+/// Optional ones that the build does not have go to `absent`.
+std::vector<WantedChain> chains_of(const std::vector<std::string>& cullers,
+                                   const std::vector<std::string>& optional_cullers,
+                                   const Registry& registry, const std::string& file,
+                                   std::vector<std::string>& absent) {
   std::vector<WantedChain> chains;
   const auto add = [&](const std::string& culler, bool optional) {
     try {
       if (optional && !is_registered(culler, registry)) {
-        absent.push_back(culler);
+        if (std::ranges::find(absent, culler) == absent.end()) absent.push_back(culler);
         return;
       }
       registry.make(culler);
@@ -197,8 +231,8 @@ std::vector<WantedChain> chains_of(const Description& description, const Registr
       throw InputError(file + ": " + error.what());
     }
   };
-  for (const std::string& culler : description.cullers) add(culler, false);
-  for (const std::string& culler : description.optional_cullers) add(culler, true);
+  for (const std::string& culler : cullers) add(culler, false);
+  for (const std::string& culler : optional_cullers) add(culler, true);
   return chains;
 }
 
@@ -265,12 +299,18 @@ Matrix load_matrix(const std::string& name_or_file, const fs::path& folder,
                    const Registry& registry) {
   const fs::path file = find_matrix(name_or_file, folder);
   const Description description = read_description(file, folder, 0);
-  if (description.cullers.empty() || description.scenes.empty()) {
+  if ((description.cullers.empty() && description.own_cullers.empty()) ||
+      description.scenes.empty()) {
     throw InputError(file.string() + ": [lists] must name at least one culler and one scene");
   }
   Matrix matrix{file.stem().string(), description.text, {}, {}};
-  const std::vector<WantedChain> chains =
-      chains_of(description, registry, file.string(), matrix.absent);
+  const std::vector<WantedChain> everywhere = chains_of(
+      description.cullers, description.optional_cullers, registry, file.string(), matrix.absent);
+  std::vector<std::vector<WantedChain>> own_chains;  // as description.own_cullers
+  for (const OwnCullers& own : description.own_cullers) {
+    own_chains.push_back(
+        chains_of(own.cullers, own.optional_cullers, registry, file.string(), matrix.absent));
+  }
   std::vector<std::string> devices = description.devices;
   if (devices.empty()) devices.push_back(description.pass.draw);
   const auto add_block = [&](Block block) {
@@ -279,6 +319,11 @@ Matrix load_matrix(const std::string& name_or_file, const fs::path& folder,
       block.frames = adjustment.frames.value_or(block.frames);
       block.rounds = adjustment.rounds.value_or(block.rounds);
       block.timeout_s = adjustment.timeout_s.value_or(block.timeout_s);
+    }
+    std::vector<WantedChain> chains = everywhere;
+    for (std::size_t i = 0; i < own_chains.size(); ++i) {
+      if (!fits(description.own_cullers[i].pattern, block)) continue;
+      chains.insert(chains.end(), own_chains[i].begin(), own_chains[i].end());
     }
     std::vector<std::string> wanted;
     for (const WantedChain& chain : chains) {

@@ -19,6 +19,9 @@
 //   [[paths]]                      scenes that fit take these paths instead of those of [lists]
 //   scene = "hares_*"
 //   path = ["hares_still", "hares_walk"]
+//   [[cullers]]                    blocks that fit have these chains, too
+//   scene = "oa_dm2"               or path, resolution, device
+//   culler = ["portal.polygon"]    and optional_culler; [lists] may then have none
 //   [[exclude]]                    leaves out cells; * matches any text
 //   culler = "occlusion.*"         or scene, path, resolution, device
 //   scene = "hares_*"

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <set>
 
 #include "algorithms/all_cullers.h"
 #include "common/scene/error.h"
@@ -110,6 +112,26 @@ TEST_F(MatrixFile, ScenesMayHavePathsOfTheirOwn) {
   EXPECT_EQ(matrix.blocks[2].path, "walk");
 }
 
+TEST_F(MatrixFile, ScenesMayHaveCullersOfTheirOwn) {
+  const std::string text =
+      "[lists]\nscene = [\"a\", \"b\", \"c\"]\n"
+      "[[cullers]]\nscene = \"a\"\nculler = [\"frustum.flat\"]\n"
+      "[[cullers]]\nscene = \"*\"\nculler = [\"backface.polygon\"]\n"
+      "optional_culler = [\"peer.of_nobody\"]\n"
+      "[[exclude]]\nscene = \"c\"\nculler = \"backface.*\"\n";
+  const Matrix matrix = load(text);
+  const std::string frustum = registry_.canonical("frustum.flat");
+  const std::string backface = registry_.canonical("backface.polygon");
+  ASSERT_EQ(matrix.blocks.size(), 2U) << "c has no cell over";
+  EXPECT_EQ(count_of(matrix.blocks[0], frustum), 1U);
+  EXPECT_EQ(count_of(matrix.blocks[0], backface), 1U);
+  EXPECT_EQ(count_of(matrix.blocks[1], frustum), 0U);
+  EXPECT_EQ(count_of(matrix.blocks[1], backface), 1U);
+  EXPECT_EQ(matrix.absent, std::vector<std::string>{"peer.of_nobody"});
+  EXPECT_NE(refusal("[lists]\nscene = [\"a\"]\n[[cullers]]\nscene = \"a\"\n").find("test.toml:3"),
+            std::string::npos);
+}
+
 TEST_F(MatrixFile, AdjustChangesTheBlocksThatFit) {
   const Matrix matrix = load(
       "rounds = 5\n[lists]\nculler = [\"frustum.flat\"]\nscene = [\"a\", \"b\"]\n"
@@ -167,6 +189,21 @@ TEST_F(MatrixFile, EveryMatrixOfTheRepositoryCanBeRead) {
   for (const auto& [name, description] : matrices) {
     EXPECT_FALSE(description.empty()) << name;
     EXPECT_FALSE(load_matrix(name, folder, registry_).blocks.empty()) << name;
+  }
+}
+
+TEST_F(MatrixFile, SmokeHasEveryCullerOfTheRegistry) {
+  const Matrix smoke = load_matrix(
+      "smoke", std::filesystem::path(VISLAB_SOURCE_DIR) / "experiments" / "matrices", registry_);
+  // It refuses scenes without a compiled game world, and none is generated.
+  std::set<std::string> seen{"portal.map_pvs"};
+  for (const Block& block : smoke.blocks) {
+    for (const BlockCuller& culler : block.cullers) {
+      for (const CullerSpec& stage : parse_chain(culler.chain)) seen.insert(stage.name);
+    }
+  }
+  for (const auto& [name, entry] : registry_.entries()) {
+    EXPECT_TRUE(seen.contains(name)) << name << " belongs into experiments/matrices/smoke.toml";
   }
 }
 

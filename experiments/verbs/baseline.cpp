@@ -1,0 +1,98 @@
+// What the cullers answer in the matrix smoke, against what is committed.
+#include "experiments/analysis/baseline.h"
+
+#include <algorithm>
+#include <iostream>
+#include <set>
+
+#include "common/scene/error.h"
+#include "experiments/matrix/matrix.h"
+#include "experiments/results/files.h"
+#include "experiments/verbs/present_results.h"
+#include "experiments/verbs/table.h"
+#include "experiments/verbs/verbs.h"
+
+namespace vislab {
+namespace {
+
+constexpr const char* matrix_name = "smoke";
+
+bool is_of(const ResultCell& cell, const Block& block) {
+  return cell.scene_source == block.scene && cell.path_source == block.path &&
+         cell.key.viewport == block.viewport && cell.key.device == block.device &&
+         cell.key.seed == block.seed && static_cast<int>(cell.frames.size()) == block.frames &&
+         std::ranges::any_of(block.cullers, [&](const BlockCuller& culler) {
+           return culler.chain == cell.key.chain && culler.replicate == cell.key.replicate;
+         });
+}
+
+/// The stored cells of the matrix.
+std::vector<ResultCell> cells_of(const Matrix& matrix, const Lab& lab,
+                                 const std::filesystem::path& results) {
+  std::vector<ResultCell> cells;
+  for (JudgedCell& judged : require_present_cells(results, lab.cullers)) {
+    if (std::ranges::any_of(matrix.blocks,
+                            [&](const Block& block) { return is_of(judged.cell, block); })) {
+      cells.push_back(std::move(judged.cell));
+    }
+  }
+  return cells;
+}
+
+/// Cells of cullers that this build does not have are no change; says so.
+Baseline without_absent(const Baseline& committed, const Matrix& matrix) {
+  Baseline present;
+  for (const auto& [name, facts] : committed) {
+    if (std::ranges::find(matrix.absent, name.culler) == matrix.absent.end()) {
+      present[name] = facts;
+    } else {
+      std::cerr << "vislab: not compared: " << name.culler << " is not in this build\n";
+    }
+  }
+  return present;
+}
+
+}  // namespace
+
+int baseline(const Lab& lab, const std::filesystem::path& results, bool write, bool json) {
+  const std::filesystem::path file = lab.repository / "tests" / "baseline.toml";
+  const Matrix matrix = load_matrix(matrix_name, lab.matrices, lab.cullers);
+  const Baseline now = baseline_of(cells_of(matrix, lab, results));
+  const std::string run = std::string("vislab run ") + matrix_name;
+  if (now.empty()) {
+    throw InputError("no cell of " + std::string(matrix_name) + " is in " + results.string() +
+                     "; measure them with: " + run + " --results " + results.string());
+  }
+  if (write) {
+    if (!matrix.absent.empty()) {
+      throw InputError("the baseline is written by a build with all cullers; this one lacks " +
+                       matrix.absent.front() + " (README.md: Peers)");
+    }
+    write_file(file, to_toml(now));
+    std::cout << now.size() << " cells written to " << file.string() << '\n';
+    return 0;
+  }
+  const Baseline committed = without_absent(load_baseline(file), matrix);
+  const std::vector<BaselineChange> found = changes(committed, now);
+  Table table({"block", "culler", "fact", "committed", "now"});
+  std::set<BaselineName> names;
+  for (const BaselineChange& change : found) {
+    names.insert(change.name);
+    const auto text = [](const std::string& value) {
+      return value.empty() ? TableValue() : TableValue(value);
+    };
+    table.add({change.name.block, change.name.culler, text(change.fact), text(change.before),
+               text(change.now)});
+  }
+  if (json || !found.empty()) table.print(std::cout, json);
+  if (found.empty()) {
+    std::cerr << "vislab: " << now.size() << " cells answer as in " << file.string() << '\n';
+    return 0;
+  }
+  std::cerr << "vislab: " << names.size() << " of " << committed.size()
+            << " cells answer otherwise than in " << file.string()
+            << ". If that is meant, write it anew: " << run << " && vislab baseline --write\n";
+  return 1;
+}
+
+}  // namespace vislab

@@ -1,0 +1,203 @@
+// Figures of the sources beside ours, and what the two say of a claim.
+#include "experiments/analysis/published.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "algorithms/all_cullers.h"
+#include "common/scene/error.h"
+#include "experiments/matrix/matrix.h"
+#include "tests/experiments/temporary_folder.h"
+#include "tests/report/fabricated.h"
+
+namespace vislab {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+class Published : public ::testing::Test {
+ protected:
+  Published() { register_all_cullers(registry_); }
+
+  std::vector<PublishedRow> rows(const std::string& text) {
+    folder_.write("figures.toml", "title = \"t\"\nsource = \"s\"\n" + text);
+    return load_published(folder_.path(), registry_).at(0).rows;
+  }
+  std::string refusal(const std::string& text) {
+    try {
+      rows(text);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  /// A block on scene "city" with none and one cell of frustum.flat, as long as half of none.
+  BlockSummary block() const {
+    BlockSummary block = fabricated_block("city");
+    CellSummary cell = fabricated_cell("frustum.flat", 0.5, 0, 1.0);
+    cell.canonical = registry_.canonical("frustum.flat");
+    cell.counters["queries"] = 30.0;
+    block.cells.push_back(cell);
+    cell.canonical = registry_.canonical("frustum.bvh");
+    cell.counters["queries"] = 40.0;
+    cell.against_none = {0.25, 0.2, 0.4};
+    block.cells.push_back(cell);
+    return block;
+  }
+
+  Registry registry_;
+  TemporaryFolder folder_;
+};
+
+const std::string place_keys = "scene = \"city\"\nculler = \"frustum.flat\"\n";
+const std::string claim = "[[row]]\nwhat = \"w\"\ntable = \"1\"\npublished = \"p\"\n";
+
+TEST_F(Published, AClaimIsConfirmedWhereTheWholeIntervalIsAcceptable) {
+  const auto verdict = [&](const std::string& accept, Estimate figure) {
+    const PublishedRow row = rows(claim + "accept = " + accept + "\n" + place_keys).at(0);
+    const BlockSummary block = this->block();
+    return verdict_of(row, {&block, &block.cells.back(), figure});
+  };
+  EXPECT_EQ(verdict("[1.0, 3.0]", {2.0, 1.0, 3.0}), ClaimVerdict::confirmed);
+  EXPECT_EQ(verdict("[1.0, inf]", {50.0, 40.0, 60.0}), ClaimVerdict::confirmed);
+  EXPECT_EQ(verdict("[1.0, 3.0]", {0.9, 0.8, 0.99}), ClaimVerdict::not_confirmed);
+  EXPECT_EQ(verdict("[1.0, 3.0]", {4.0, 3.1, 5.0}), ClaimVerdict::not_confirmed);
+  EXPECT_EQ(verdict("[1.0, 3.0]", {1.2, 0.9, 1.4}), ClaimVerdict::cannot_be_told);
+  EXPECT_EQ(verdict("[1.0, 3.0]", {2.0, 0.5, 4.0}), ClaimVerdict::cannot_be_told);
+  EXPECT_EQ(verdict("[0, 0]", {0.0, 0.0, 0.0}), ClaimVerdict::confirmed);
+  EXPECT_EQ(verdict("[1.0, 3.0]", Estimate::none()), ClaimVerdict::cannot_be_told);
+}
+
+TEST_F(Published, WhatWasNotRunOrCannotBeToldSaysSo) {
+  const PublishedRow row = rows(claim + "accept = [1, 2]\n" + place_keys).at(0);
+  EXPECT_EQ(verdict_of(row, own_figure(row, {})), ClaimVerdict::not_run);
+  const PublishedRow untold = rows(claim + "cannot_be_told = \"lost\"\n").at(0);
+  EXPECT_EQ(verdict_of(untold, own_figure(untold, {block()})), ClaimVerdict::cannot_be_told);
+  EXPECT_EQ(to_string(ClaimVerdict::not_confirmed), "not confirmed");
+}
+
+TEST_F(Published, RowsInFramesASecondTakeTheFilesTolerance) {
+  const std::string fps = "[[row]]\nwhat = \"w\"\ntable = \"1\"\nwithout_fps = 10\nwith_fps = 30\n";
+  const PublishedRow row = rows("tolerance = 1.5\n" + fps + place_keys).at(0);
+  EXPECT_DOUBLE_EQ(row.accept.low, 2.0);
+  EXPECT_DOUBLE_EQ(row.accept.high, 4.5);
+  EXPECT_EQ(rows("tolerance = 1.5\n" + fps + "accept = [1, inf]\n" + place_keys).at(0).accept.high,
+            infinity);
+  EXPECT_NE(refusal(fps + place_keys).find("accept"), std::string::npos);
+  EXPECT_NE(refusal("tolerance = 0.5\n" + fps + place_keys).find("tolerance"), std::string::npos);
+}
+
+TEST_F(Published, TimesCompareWithNoneAndOtherMetricsWithNobody) {
+  const auto figure = [&](const std::string& keys) {
+    const PublishedRow row = rows(claim + "accept = [1, 2]\n" + place_keys + keys).at(0);
+    return own_figure(row, {block()}).ratio;
+  };
+  EXPECT_DOUBLE_EQ(figure("").value, 2.0);
+  // Half as fast as the other; the widest interval that both allow.
+  EXPECT_DOUBLE_EQ(figure("against = \"frustum.bvh\"\n").value, 0.5);
+  EXPECT_DOUBLE_EQ(figure("against = \"frustum.bvh\"\n").low, 0.2 / 0.51);
+  EXPECT_DOUBLE_EQ(figure("metric = \"queries\"\n").value, 30.0);
+  EXPECT_DOUBLE_EQ(figure("metric = \"queries\"\nagainst = \"frustum.bvh\"\n").value, 0.75);
+  EXPECT_DOUBLE_EQ(figure("metric = \"false_px\"\n").high, 0.0);
+  EXPECT_TRUE(std::isnan(figure("metric = \"no_such_counter\"\n").value));
+}
+
+TEST_F(Published, SharesAreThoseOfAllTrianglesAndMayBeCompared) {
+  BlockSummary block = this->block();
+  for (CellSummary& cell : block.cells) {
+    cell.submitted_triangles = cell.canonical == "none" ? 100.0 : 40.0;
+  }
+  block.cells.back().submitted_triangles = 20.0;  // frustum.bvh
+  const auto figure = [&](const std::string& keys) {
+    const PublishedRow row =
+        rows(claim + "accept = [0, 1]\nmetric = \"culled\"\n" + place_keys + keys).at(0);
+    return std::pair(row.is_share(), own_figure(row, {block}).ratio.value);
+  };
+  EXPECT_EQ(figure(""), std::pair(true, 0.6));
+  EXPECT_EQ(figure("against = \"frustum.bvh\"\n"), std::pair(false, 0.6 / 0.8));
+}
+
+TEST_F(Published, ModelledDevicesCountOnlyForRowsThatNameThem) {
+  BlockSummary modelled = block();
+  modelled.device = "modelled[preset=gpu]";
+  modelled.device_models.resize(1);
+  const PublishedRow anywhere = rows(claim + "accept = [1, 2]\n" + place_keys).at(0);
+  const PublishedRow there =
+      rows(claim + "accept = [1, 2]\ndevice = \"modelled[preset=gpu]\"\n" + place_keys).at(0);
+  EXPECT_EQ(own_figure(anywhere, {modelled}).cell, nullptr);
+  EXPECT_NE(own_figure(there, {modelled}).cell, nullptr);
+  EXPECT_EQ(own_figure(there, {block()}).cell, nullptr);
+}
+
+TEST_F(Published, RowsSayWhatTheirScenesStandFor) {
+  const auto all = rows("[stand_ins]\ncity = \"a city of 2012\"\n" + claim + "accept = [1, 2]\n" +
+                        place_keys + claim + "cannot_be_told = \"lost\"\n");
+  EXPECT_EQ(all[0].stand_in, "a city of 2012");
+  EXPECT_EQ(all[1].stand_in, "");
+}
+
+TEST_F(Published, WrongFilesAreRefusedWithFileAndLine) {
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {claim + place_keys, "accept must be"},
+      {claim + "accept = [2, 1]\n" + place_keys, "accept must be"},
+      {claim + "accept = [1]\n" + place_keys, "accept must be"},
+      {claim + "accept = \"fast\"\n" + place_keys, "accept must be"},
+      {claim + "accept = [1, 2]\nculler = \"frustum.flat\"\n", "scene is missing"},
+      {claim + "accept = [1, 2]\nscene = \"city\"\nculler = \"frustum.flar\"\n", "frustum.flat"},
+      {claim + "accept = [1, 2]\ndevice = \"vulkan\"\n" + place_keys, "osmesa"},
+      {claim + "cannot_be_told = \"lost\"\naccept = [1, 2]\n", "has no accept"},
+      {claim + "verdict = \"true\"\n", "accept"}};
+  for (const auto& [text, words] : cases) {
+    const std::string message = refusal(text);
+    EXPECT_NE(message.find(words), std::string::npos) << message << "\nof\n" << text;
+    EXPECT_NE(message.find("figures.toml:"), std::string::npos) << message;
+  }
+}
+
+/// The repository's own figures.
+std::vector<PublishedFigures> own_files(const Registry& registry) {
+  return load_published(std::filesystem::path(VISLAB_SOURCE_DIR) / "experiments" / "published",
+                        registry);
+}
+
+TEST_F(Published, TheMatrixSeedsHasTheCellsOfEveryClaim) {
+  const Matrix seeds = load_matrix(
+      "seeds", std::filesystem::path(VISLAB_SOURCE_DIR) / "experiments" / "matrices", registry_);
+  const auto has = [&](const PublishedRow& row, const std::string& chain) {
+    return std::ranges::any_of(seeds.blocks, [&](const Block& block) {
+      const bool there =
+          block.scene == row.scene && (row.path.empty() || block.path == row.path) &&
+          (row.device.empty() ? !block.device.starts_with("modelled") : block.device == row.device);
+      return there && std::ranges::any_of(block.cullers, [&](const BlockCuller& culler) {
+               return culler.chain == chain;
+             });
+    });
+  };
+  const auto all = own_files(registry_);
+  EXPECT_GE(all.size(), 7U);
+  for (const PublishedFigures& figures : all) {
+    for (const PublishedRow& row : figures.rows) {
+      if (!row.cannot_be_told.empty()) continue;
+      EXPECT_TRUE(has(row, row.culler))
+          << figures.title << ": " << row.what << ": " << row.short_culler << " on " << row.scene;
+      EXPECT_TRUE(has(row, row.against))
+          << figures.title << ": " << row.what << ": " << row.short_against << " on " << row.scene;
+    }
+  }
+}
+
+TEST_F(Published, EveryClaimSaysWhatItsSceneStandsForOrWhyItCannotBeTold) {
+  for (const PublishedFigures& figures : own_files(registry_)) {
+    for (const PublishedRow& row : figures.rows) {
+      EXPECT_NE(row.stand_in.empty(), row.cannot_be_told.empty())
+          << figures.title << ": " << row.what << ": " << row.scene;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vislab
