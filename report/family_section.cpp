@@ -343,7 +343,6 @@ void add_family_fields(const ReportInput& input,
     entry.values["chapter"] = fill_template(read_template(file), chapter, file.string());
     chapters.push_back(std::move(entry));
   }
-  fields.flag("has_families", !chapters.empty());
 }
 
 }  // namespace vislab
