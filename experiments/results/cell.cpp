@@ -1,6 +1,7 @@
 #include "experiments/results/cell.h"
 
 #include <array>
+#include <cstdlib>
 
 #include "experiments/results/hash.h"
 #include "experiments/results/json_reader.h"
@@ -9,8 +10,6 @@ namespace vislab {
 namespace {
 
 using nlohmann::json;
-
-constexpr int format_version = 2;
 
 /// The value of an enumeration from its name.
 template <typename Enum, std::size_t n>
@@ -184,7 +183,7 @@ std::string to_json(const ResultCell& cell) {
           {{"session", round.session}, {"number", round.number}, {"frame_ms", round.frame_ms}});
     }
   }
-  json j = {{"format", format_version},
+  json j = {{"format", cell_format_version},
             {"id", cell.key.id()},
             {"key", key_to_json(cell.key)},
             {"culler", cell.culler},
@@ -216,10 +215,17 @@ std::string to_json(const ResultCell& cell) {
   return j.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
+int cell_format(const std::string& text) {
+  // Not parsed as a whole: cells are large, and inside of a string the quotes would be escaped.
+  const std::string name = "\"format\":";
+  const std::size_t at = text.find(name);
+  return at == std::string::npos ? 0 : std::atoi(text.c_str() + at + name.size());
+}
+
 std::optional<ResultCell> parse_cell(const std::string& text, const std::string& where) {
   const json j = parse_json(text, where);
   return read_json(where, [&]() -> std::optional<ResultCell> {
-    if (j.at("format") != format_version) return std::nullopt;
+    if (j.at("format") != cell_format_version) return std::nullopt;
     ResultCell cell;
     cell.key = key_from_json(j.at("key"));
     if (j.at("id") != cell.key.id()) {

@@ -99,6 +99,12 @@ std::string to_string(ResultCell::Status status);
 /// Hash of what the judge has to judge: the sets and truths of all frames.
 std::string answer_hash(const ResultCell& cell);
 
+/// Of the cells that this program writes.
+inline constexpr int cell_format_version = 2;
+
+/// The version of the format of a cell's JSON text; 0 if it does not say.
+int cell_format(const std::string& json);
+
 /// JSON text, and back. parse_cell gives nothing for text of another version of the format, and
 /// throws InputError that names `where` and what is wrong for anything else that is no cell.
 std::string to_json(const ResultCell& cell);

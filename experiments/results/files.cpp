@@ -14,9 +14,9 @@ namespace vislab {
 std::string read_file(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::ostringstream content;
-  if (std::filesystem::is_directory(file) || !in || !(content << in.rdbuf())) {
+  std::error_code code;
+  if (std::filesystem::is_directory(file, code) || !in || !(content << in.rdbuf())) {
     // An empty file sets failbit on the stream that copies it: that is not an error.
-    std::error_code code;
     if (std::filesystem::is_regular_file(file, code) && std::filesystem::is_empty(file, code)) {
       return "";
     }
@@ -35,7 +35,7 @@ void write_file(const std::filesystem::path& file, const std::string& content) {
   if (!out || code) {
     const std::string why = code ? code.message() : std::strerror(errno);
     std::filesystem::remove(temporary, code);
-    throw InputError("cannot write " + file.string() + ": " + why);
+    throw WriteError("cannot write " + file.string() + ": " + why);
   }
 }
 

@@ -137,7 +137,8 @@ ResultStore ResultStore::create(fs::path folder) {
 }
 
 ResultStore ResultStore::open(fs::path folder) {
-  if (!fs::is_directory(folder / "cells")) {
+  std::error_code code;
+  if (!fs::is_directory(folder / "cells", code)) {
     throw InputError("no results in " + folder.string() +
                      "; measure some with 'vislab run' or name another folder with --results");
   }
@@ -151,18 +152,44 @@ std::optional<ResultCell> ResultStore::load_cell(const std::string& id) const {
 }
 
 void ResultStore::save_cell(const ResultCell& cell) const {
-  write_file(folder_ / "cells" / (cell.key.id() + ".json"), to_json(cell));
+  const std::string name = cell.key.id() + ".json";
+  const fs::path file = folder_ / "cells" / name;
+  std::error_code code;
+  if (fs::exists(file, code)) {
+    const int format = cell_format(read_file(file));
+    if (format != 0 && format != cell_format_version) {
+      const fs::path older = folder_ / "other_formats" / std::to_string(format);
+      fs::create_directories(older, code);
+      if (!code) fs::rename(file, older / name, code);
+      if (code) {
+        throw WriteError("cannot put " + file.string() + " aside in " + older.string() + ": " +
+                         code.message());
+      }
+    }
+  }
+  write_file(file, to_json(cell));
 }
 
-std::vector<ResultCell> ResultStore::load_all() const {
+std::vector<ResultCell> ResultStore::load_all(std::map<int, std::size_t>* other_formats) const {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder_ / "cells")) {
-    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  std::error_code code;
+  for (fs::directory_iterator entry(folder_ / "cells", code), end; entry != end && !code;
+       entry.increment(code)) {
+    if (entry->path().extension() == ".json") files.push_back(entry->path());
+  }
+  if (code) {
+    throw InputError("results folder " + folder_.string() + " cannot be read: " + code.message() +
+                     "; name another with --results");
   }
   std::ranges::sort(files);
   std::vector<ResultCell> cells;
   for (const fs::path& file : files) {
-    if (auto cell = parse_cell(read_file(file), file.string())) cells.push_back(std::move(*cell));
+    const std::string text = read_file(file);
+    if (auto cell = parse_cell(text, file.string())) {
+      cells.push_back(std::move(*cell));
+    } else if (other_formats != nullptr) {
+      ++(*other_formats)[cell_format(text)];
+    }
   }
   return cells;
 }

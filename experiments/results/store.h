@@ -4,10 +4,12 @@
 //   images/HASH.ids    images of hidden-surface algorithms, compressed
 //   truth/KEY.truth    what rays saw, compressed
 //   verdicts/ID.json   what the judge made of a cell's sets; derived, may be deleted
+//   other_formats/N/   cells of format N that were measured again since
 // Files are written to a temporary name and renamed.
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -51,10 +53,12 @@ class ResultStore {
   /// Empty if there is none, or only one of another version of the format. Throws InputError that
   /// names the file if it is corrupt.
   std::optional<ResultCell> load_cell(const std::string& id) const;
+  /// A cell of another format that has the same name is put aside, not overwritten.
   void save_cell(const ResultCell& cell) const;
-  /// All cells of this version of the format, by id. Throws InputError that names the first corrupt
-  /// file.
-  std::vector<ResultCell> load_all() const;
+  /// All cells of this version of the format, by id. `other_formats`, if it is not null, gets the
+  /// number of cells of each other version, which are left alone. Throws InputError that names the
+  /// first corrupt file, or the folder if it cannot be read.
+  std::vector<ResultCell> load_all(std::map<int, std::size_t>* other_formats = nullptr) const;
 
   /// Writes the set unless it is there.
   void save_set(const std::string& hash, const VisibleSet& set) const;

@@ -19,6 +19,7 @@
 #include "experiments/context/context.h"
 #include "experiments/context/sources.h"
 #include "experiments/devices/device_spec.h"
+#include "experiments/results/files.h"
 #include "experiments/run/block_judge.h"
 #include "experiments/run/path_run.h"
 
@@ -239,12 +240,14 @@ class BlockRun {
         });
   }
 
-  /// Runs `work` for a cell; what it throws makes the cell fail.
+  /// Runs `work` for a cell; what it throws makes the cell fail, unless a file cannot be written.
   template <typename Function>
   void guarded(Runner& runner, Function&& work) {
     watch_.begin(runner.cell.key.id(), block_.timeout_s);
     try {
       work();
+    } catch (const WriteError&) {
+      throw;  // not the method's fault: it is not marked as failed
     } catch (const std::bad_alloc&) {
       fail(runner, "out of memory");
     } catch (const std::exception& error) {

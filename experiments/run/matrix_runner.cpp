@@ -1,8 +1,6 @@
 #include "experiments/run/matrix_runner.h"
 
-#include <fcntl.h>
 #include <poll.h>
-#include <sys/file.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -19,6 +17,7 @@
 
 #include "common/scene/error.h"
 #include "experiments/devices/device_spec.h"
+#include "experiments/results/files.h"
 #include "experiments/results/hash.h"
 #include "experiments/results/store.h"
 
@@ -52,29 +51,15 @@ class StopOnSignal {
   struct sigaction terminate_before_ {};
 };
 
-/// One run at a time writes into a results folder; two would measure each other's load.
-class FolderLock {
- public:
-  explicit FolderLock(const std::filesystem::path& folder)
-      : file_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    if (file_ < 0 || ::flock(file_, LOCK_EX | LOCK_NB) != 0) {
-      if (file_ >= 0) ::close(file_);
-      throw InputError("another run writes into " + folder.string() +
-                       "; wait for it, or name another folder with --results");
-    }
-  }
-  ~FolderLock() { ::close(file_); }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  int file_;
-};
-
-/// What killed runs left half-written. Only under the lock.
+/// What killed runs left half-written. Only under the folder's lock.
 void remove_temporary_files(const std::filesystem::path& results) {
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(results)) {
-    if (entry.path().extension() == ".tmp") std::filesystem::remove(entry.path());
+  namespace fs = std::filesystem;
+  std::error_code code;  // what cannot be read is not in the way
+  const auto options = fs::directory_options::skip_permission_denied;
+  for (fs::recursive_directory_iterator entry(results, options, code), end; entry != end;
+       entry.increment(code)) {
+    if (code) break;
+    if (entry->path().extension() == ".tmp") fs::remove(entry->path(), code);
   }
 }
 
@@ -133,7 +118,8 @@ GpuModel model_from_line(std::istream& in) {
 
 /// The child: runs the block and tells the parent what it does. Messages:
 ///   cell ID SECONDS | idle | costs NS LOW HIGH for each quantity | fit VALUE for each dial |
-///   member ID | outcome MEASURED PRESENT FAILED STOPPED | error TEXT | failure TEXT
+///   member ID | outcome MEASURED PRESENT FAILED STOPPED | error TEXT | unwritten TEXT |
+///   failure TEXT
 int run_child(int pipe, const Block& block, const RunSettings& settings, const Registry& registry,
               Progress& progress) {
   const CellWatch watch{[&](const std::string& id, double seconds) {
@@ -156,7 +142,8 @@ int run_child(int pipe, const Block& block, const RunSettings& settings, const R
     const bool wrong_input = dynamic_cast<const InputError*>(&error) != nullptr;
     std::string text = error.what();
     std::ranges::replace(text, '\n', ' ');
-    tell(pipe, (wrong_input ? "error " : "failure ") + text);
+    const bool unwritten = dynamic_cast<const WriteError*>(&error) != nullptr;
+    tell(pipe, (unwritten ? "unwritten " : wrong_input ? "error " : "failure ") + text);
     return wrong_input ? 2 : 1;
   }
 }
@@ -169,8 +156,9 @@ struct Child {
   std::chrono::steady_clock::time_point deadline;
   std::optional<BlockOutcome> outcome;
   std::vector<std::string> members;
-  std::string error;    // wrong input
-  std::string failure;  // anything else that ended the block
+  std::string error;      // wrong input
+  std::string unwritten;  // a result that could not be written
+  std::string failure;    // anything else that ended the block
   bool timed_out = false;
   double timeout_s = 0.0;
   int status = 0;  // of waitpid
@@ -198,6 +186,8 @@ void take_message(const std::string& line, Child& child) {
     child.outcome = outcome;
   } else if (word == "error") {
     child.error = line.substr(6);
+  } else if (word == "unwritten") {
+    child.unwritten = line.substr(10);
   } else if (word == "failure") {
     child.failure = line.substr(8);
   }
@@ -288,8 +278,6 @@ RunOutcome run_blocks(const std::vector<Block>& blocks, const RunOptions& option
   RunOutcome total;
   Progress progress(options.quiet);
   const StopOnSignal signals;
-  ResultStore::create(options.settings.results);  // wrong folders are told before any work
-  const FolderLock lock(options.settings.results);
   remove_temporary_files(options.settings.results);
   RunSettings settings = options.settings;
   settings.run = new_run();
@@ -327,6 +315,13 @@ RunOutcome run_blocks(const std::vector<Block>& blocks, const RunOptions& option
       if (!child.error.empty()) {
         total.errors.push_back(child.error);
         break;
+      }
+      if (!child.unwritten.empty()) {
+        // No other block could be written either.
+        total.errors.push_back(child.unwritten +
+                               "; what is whole is kept: make room, and the same call goes on");
+        progress.finish();
+        return total;
       }
       if (stop_requested != 0) break;
       const std::string reason = child.failure.empty() ? reason_of_death(child) : child.failure;

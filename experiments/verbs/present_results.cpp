@@ -1,5 +1,8 @@
 #include "experiments/verbs/present_results.h"
 
+#include <iostream>
+#include <map>
+
 #include "common/scene/error.h"
 #include "experiments/context/sources.h"
 #include "experiments/results/store.h"
@@ -10,7 +13,15 @@ std::vector<JudgedCell> present_cells(const std::filesystem::path& results,
                                       const Registry& cullers) {
   const ResultStore store = ResultStore::open(results);
   std::vector<JudgedCell> present;
-  for (ResultCell& cell : store.load_all()) {
+  std::map<int, std::size_t> other_formats;
+  std::vector<ResultCell> stored = store.load_all(&other_formats);
+  for (const auto& [format, count] : other_formats) {
+    std::cerr << "vislab: " << count << (count == 1 ? " cell" : " cells") << " in "
+              << (results / "cells").string() << (count == 1 ? " is" : " are") << " of format "
+              << format << ", of " << (format < cell_format_version ? "an older" : "a newer")
+              << " version of vislab: left alone; run the matrices again\n";
+  }
+  for (ResultCell& cell : stored) {
     try {
       // Parameters may have been added since: the canonical name is another then.
       if (cullers.canonical(cell.key.chain) != cell.key.chain) continue;

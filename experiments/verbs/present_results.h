@@ -10,7 +10,8 @@
 namespace vislab {
 
 /// Cells of the folder that were measured with the sources as they are now, with their verdicts.
-/// Throws InputError if there is no such folder or a cell is corrupt.
+/// Says on stderr how many are of another format. Throws InputError if there is no such folder or a
+/// cell is corrupt.
 std::vector<JudgedCell> present_cells(const std::filesystem::path& results,
                                       const Registry& cullers);
 

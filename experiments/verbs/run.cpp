@@ -6,6 +6,7 @@
 #include "common/scene/error.h"
 #include "experiments/devices/device_spec.h"
 #include "experiments/matrix/resolution.h"
+#include "experiments/results/folder_lock.h"
 #include "experiments/run/matrix_runner.h"
 #include "experiments/verbs/present_results.h"
 #include "experiments/verbs/sweep_results.h"
@@ -244,6 +245,11 @@ int run(const Lab& lab, const RunCall& call) {
   options.settings.retry_failed = call.retry_failed;
   std::tie(options.shard, options.shards) = parse_shard(call.shard);
   options.quiet = call.quiet;
+  ResultStore::create(call.results);  // wrong folders are told before any work
+  const FolderLock lock(call.results, [&] {
+    std::cerr << "vislab: another run writes into " << call.results.string()
+              << "; waiting for it to end\n";
+  });
   for (const Sweep& sweep : work.sweeps) write_sweep_files(sweep);
   const RunOutcome outcome = run_blocks(work.blocks, options, lab.cullers);
   for (std::size_t i = 0; i < work.sweeps.size(); ++i) {
