@@ -24,6 +24,13 @@ std::string family_of_stage(const std::string& name, const Registry* cullers) {
   return name.substr(0, name.find('.'));
 }
 
+/// Of a text that may hold the name of a dial instead of a value, and so need not be a chain.
+std::string last_name(const std::string& text) {
+  const std::size_t stage = text.rfind("> ");
+  const std::string last = stage == std::string::npos ? text : text.substr(stage + 2);
+  return last.substr(0, last.find('['));
+}
+
 bool is_left_out(const std::string& name, const Registry* cullers) {
   if (cullers == nullptr) return false;
   const auto found = cullers->entries().find(name);
@@ -129,9 +136,8 @@ std::vector<Fields> break_rows(const ReportInput& input, const std::string& fami
     std::string holds;
     std::string open;
     for (const SweepVerdict& verdict : result.verdicts) {
-      const std::vector<CullerSpec> chain = parse_chain(verdict.culler);
-      if (chain.empty() || !verdict.was_measured()) continue;
-      if (family_of_stage(chain.back().name, input.cullers) != family) continue;
+      if (!verdict.was_measured()) continue;
+      if (family_of_stage(last_name(verdict.culler), input.cullers) != family) continue;
       std::string& list = verdict.break_point ? breaks : verdict.is_complete ? holds : open;
       list += (list.empty() ? "" : "; ") + (verdict.break_point ? break_of(result.sweep, verdict)
                                                                 : markdown_code(verdict.culler));
