@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstdio>
 #include <numeric>
+#include <tuple>
 
 #include "experiments/matrix/toml_keys.h"
 #include "experiments/results/hash.h"

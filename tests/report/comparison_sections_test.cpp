@@ -104,6 +104,7 @@ TEST(PublishedSection, ShowsSharesInPercentAndSaysWhyAFigureCannotBeTold) {
   PublishedRow share{"share",      "abstract", 0.0,          0.0,    "bunny",     "orbit",
                      "backface.a", "none",     "backface.a", "none", "30 to 55 %"};
   share.metric = PublishedRow::Metric::culled;
+  share.compares = false;
   PublishedRow untold{"another", "abstract", 0.0, 0.0, "", "", "", ""};
   untold.published = "7 %";
   untold.cannot_be_told = "the model is not to be had";
