@@ -21,6 +21,7 @@ Lab make_lab() {
   lab.data = {lab.repository / "data", lab.repository / "data" / "cache"};
   lab.matrices = lab.repository / "experiments" / "matrices";
   lab.sweeps = lab.repository / "experiments" / "stress";
+  lab.size_sweeps = lab.repository / "experiments" / "model_size";
   lab.published = lab.repository / "experiments" / "published";
   lab.errata = lab.repository / "experiments" / "errata" / "errata.toml";
   lab.report = lab.repository / "report";
@@ -42,6 +43,7 @@ class CommandLine {
     add_export();
     add_report();
     add_atlas();
+    add_knees();
     add_check();
     add_new_culler();
     add_baseline();
@@ -93,13 +95,15 @@ class CommandLine {
                run_.json = json_;
                return plan(lab_, run_);
              });
-    sub->add_option("matrix", run_.matrices, "names or files; stress = all sweeps")->required();
+    sub->add_option("matrix", run_.matrices,
+                    "names or files; stress, model_size = all of these sweeps")
+        ->required();
     add_results(sub);
     add_json(sub);
   }
   void add_run() {
     CLI::App* const sub =
-        verb("run", "measures matrices, stress sweeps, or one culler on one scene", [this] {
+        verb("run", "measures matrices, sweeps, or one culler on one scene", [this] {
           run_.json = json_;
           if (run_.matrices.empty() == run_.culler.empty() ||
               run_.culler.empty() != run_.scene.empty()) {
@@ -107,7 +111,8 @@ class CommandLine {
           }
           return vislab::run(lab_, run_);
         });
-    sub->add_option("matrix", run_.matrices, "names or files; stress = all sweeps");
+    sub->add_option("matrix", run_.matrices,
+                    "names or files; stress, model_size = all of these sweeps");
     CLI::Option* const culler =
         sub->add_option("--culler", run_.culler, "a culler or a chain: 'a[x=1] > b'");
     sub->add_option("--scene", run_.scene, "name, description, mesh or Quake III world")
@@ -203,6 +208,14 @@ class CommandLine {
     add_results(sub);
     add_json(sub);
   }
+  void add_knees() {
+    CLI::App* const sub =
+        verb("knees", "how large models have to be: the knees of size sweeps, and the defaults",
+             [this] { return knees(lab_, run_.results, knees_file_, json_); });
+    sub->add_option("--write", knees_file_, "also writes them to this file, as data/knees.toml");
+    add_results(sub);
+    add_json(sub);
+  }
   void add_check() {
     CLI::App* const sub =
         verb("check", "contract tests on one culler or chain, or on all; or the cells of a scene",
@@ -248,6 +261,7 @@ class CommandLine {
   bool json_ = false;
   RunCall run_;
   ShowCall show_;
+  std::filesystem::path knees_file_;
   std::filesystem::path report_folder_ = "out/report";
 };
 

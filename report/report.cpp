@@ -16,6 +16,7 @@
 #include "report/family_section.h"
 #include "report/introduction_section.h"
 #include "report/method_fields.h"
+#include "report/model_size_section.h"
 #include "report/persistence_section.h"
 #include "report/process.h"
 #include "report/query_section.h"
@@ -96,6 +97,7 @@ void draw_charts(const ReportInput& input, const QueryFindings& queries,
   if (!persistence.empty()) {
     script += persistence_chart_script(persistence, persistence_chart_file);
   }
+  script += size_charts_script(input.sizes);
   script += query_chart_script(queries);
   if (script.empty()) return;
   write_text(work / "charts.gnuplot", script);
@@ -113,6 +115,7 @@ void write_words(const ReportInput& input, const QueryFindings& queries,
   add_persistence_fields(persistence, fields);
   add_query_fields(input, queries, work, fields);
   add_cell_fields(input, work, fields);
+  add_model_size_fields(input.sizes, fields);
   add_chain_fields(input, fields);
   add_errata_fields(input, work, fields);
   add_introduction_fields(input, queries.diagram_blocks(), work, fields);
@@ -185,7 +188,8 @@ void write_report(const ReportInput& input, const fs::path& template_folder,
                   const fs::path& folder) {
   const bool no_sweep =
       std::ranges::none_of(input.sweeps, [](const SweepResult& s) { return s.was_measured(); });
-  if (input.blocks.empty() && no_sweep) {
+  if (input.blocks.empty() && no_sweep &&
+      std::ranges::none_of(input.sizes, &SizeResult::was_measured)) {
     throw InputError("there is nothing to report; measure something with 'vislab run' first");
   }
   const WorkFolder work;

@@ -8,6 +8,7 @@
 
 #include "common/culler/registry.h"
 #include "experiments/analysis/break_points.h"
+#include "experiments/analysis/knees.h"
 #include "experiments/analysis/errata.h"
 #include "experiments/analysis/persistence.h"
 #include "experiments/analysis/published.h"
@@ -29,6 +30,7 @@ struct ReportInput {
   /// Blocks of stress sweeps, which stand in the sections on break points and wrong methods only.
   std::vector<BlockSummary> sweep_blocks;
   std::vector<SweepResult> sweeps;
+  std::vector<SizeResult> sizes;  // size sweeps, whose blocks are in neither
   std::vector<PublishedFigures> published;
   std::vector<Erratum> errata;
   const Registry* cullers = nullptr;  // for the method pages

@@ -69,7 +69,7 @@ class ClusterCones {
 };
 
 /// What the clusters of cones are made with.
-ClusterSettings cone_clusters(std::uint32_t size = 32);
+ClusterSettings cone_clusters(std::uint32_t size = 8);
 
 /// The cones of the clusters below `tested`. O(triangles) expected.
 ClusterCones cones_of(const Mesh& mesh, const MeshFrame& frame, const TriangleClusters& clusters,

@@ -45,7 +45,7 @@ CullerInfo describe() {
           "what the cone starts from: apex, a point behind all planes of the cluster; sphere, its "
           "bounding sphere, which finds less the farther the cluster's triangles lie apart"),
       ParameterSpec::integer(
-          "size", 32, 1, 4096, "triangles", ParameterSpec::Stage::build,
+          "size", 8, 1, 4096, "triangles", ParameterSpec::Stage::build,
           "triangles in a cluster; smaller ones find more back faces and take more tests. Small "
           "meshes get smaller ones, so that there are at least 256 while that is possible"),
       open_parameter()};

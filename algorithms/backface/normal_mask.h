@@ -10,8 +10,8 @@
 namespace vislab::backface_culling {
 
 struct NormalMaskOptions {
-  int n = 16;         // squares along an edge of the direction cube
-  int sectors = 8;    // a side of the view
+  int n = 8;          // squares along an edge of the direction cube
+  int sectors = 4;    // a side of the view
   bool open = false;  // test meshes that are not solid too
   ClassTest class_test = ClassTest::corners;
 };

@@ -35,7 +35,7 @@ CullerInfo describe() {
            "45 by the surface-area heuristic"),
        ParameterSpec::integer("depth", 24, 0, 48, "levels", build,
                               "how often nodes are split at most"),
-       ParameterSpec::integer("leaf_size", 32, 1, 1'000'000, "objects", build,
+       ParameterSpec::integer("leaf_size", 64, 1, 1'000'000, "objects", build,
                               "a leaf with so many objects is not split")},
       frustum_culling::node_policy_parameter());
   info.summary =

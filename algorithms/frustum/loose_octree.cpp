@@ -31,7 +31,7 @@ CullerInfo describe() {
                            "leaves what straddles planes near the root, 5 is the report's value, "
                            "half a cell's edge is Ulrich's loose octree on that level; too great "
                            "and nodes touch the frustum more often"),
-       ParameterSpec::integer("depth", 8, 0, 20, "levels", build,
+       ParameterSpec::integer("depth", 5, 0, 20, "levels", build,
                               "how often cells are halved at most"),
        ParameterSpec::real("min_cell", 0.0, 0.0, 1e9, "m", build,
                            "cells are not halved into smaller ones"),

@@ -26,7 +26,7 @@ CullerInfo describe() {
   CullerInfo info = frustum_culling::structure_culler_info(
       "frustum.octree", Repeatability::path,
       {ParameterSpec::integer(
-           "depth", 6, 0, 16, "levels", ParameterSpec::Stage::build,
+           "depth", 4, 0, 16, "levels", ParameterSpec::Stage::build,
            "how often cells are halved at most; too small leaves many objects to "
            "test, too great makes many nodes and entries"),
        ParameterSpec::integer("leaf_size", 64, 1, 1'000'000, "objects", ParameterSpec::Stage::build,

@@ -33,7 +33,7 @@ CullerInfo describe() {
       {ParameterSpec::choice("nodes", "leaves", {"leaves", "inner"}, ParameterSpec::Stage::query,
                              "step 1 tests all leaves, or descends through the inner nodes"),
        ParameterSpec::integer(
-           "depth", 4, 0, 16, "levels", build,
+           "depth", 3, 0, 16, "levels", build,
            "how often cells are halved at most; too small leaves many objects to "
            "test, too great makes many leaves and entries"),
        ParameterSpec::integer("leaf_size", 64, 1, 1'000'000, "objects", build,

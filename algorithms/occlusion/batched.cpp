@@ -40,7 +40,7 @@ CullerInfo describe() {
   info.stage = PipelineStage::raster;
   info.needs_device = true;
   info.parameters = {
-      ParameterSpec::integer("batch", 20, 1, 1000, "questions", ParameterSpec::Stage::query,
+      ParameterSpec::integer("batch", 80, 1, 1000, "questions", ParameterSpec::Stage::query,
                              "how many questions are asked together; few: many changes of state "
                              "and waits; many: objects of one batch do not hide each other"),
       threshold_parameter()};

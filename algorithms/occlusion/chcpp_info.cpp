@@ -25,7 +25,7 @@ CullerInfo chcpp_info() {
       ParameterSpec::integer("leaf_triangles", 1000, 1, 100'000'000, "triangles", build,
                              "nodes with so many triangles, a draw counting as 20, are asked about "
                              "and drawn as a whole"),
-      ParameterSpec::integer("batch", 50, 1, 10'000, "nodes", query,
+      ParameterSpec::integer("batch", 10, 1, 10'000, "nodes", query,
                              "so many hidden nodes at most wait to be asked about in one go"),
       ParameterSpec::boolean(
           "lazy", true, query,
@@ -51,7 +51,7 @@ CullerInfo chcpp_info() {
           "the path so far"),
       ParameterSpec::boolean("tight_bounds", true, build,
                              "units are asked about by the boxes of their parts"),
-      ParameterSpec::real("sigma", 1.4, 1.0, 100.0, "", build,
+      ParameterSpec::real("sigma", 1.0, 1.0, 100.0, "", build,
                           "the parts' boxes have at most so many times the surface of the one box"),
       ParameterSpec::integer("max_boxes", 16, 1, TightBounds::most_boxes, "boxes", build,
                              "a unit has at most so many boxes, and fewer if it is light"),

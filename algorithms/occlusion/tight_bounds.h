@@ -40,7 +40,7 @@ class TightBounds {
   static constexpr std::uint32_t most_boxes = 32;
 
   struct Limits {
-    double sigma = 1.4;            // at least 1
+    double sigma = 1.0;            // at least 1
     std::uint32_t max_boxes = 16;  // that are given out for one object or node; 1 to most_boxes
     /// Of the divisions that sigma and max_boxes allow the last, as in the paper, in place of the
     /// one with the least room.

@@ -6,6 +6,7 @@
 #include "common/scene/quake_world.h"
 #include "experiments/devices/device_spec.h"
 #include "experiments/matrix/matrix.h"
+#include "experiments/matrix/size_sweep.h"
 #include "experiments/matrix/sweep.h"
 #include "experiments/verbs/table.h"
 #include "experiments/verbs/verbs.h"
@@ -134,6 +135,24 @@ void describe_sweep(const Lab& lab, const std::string& name, bool json) {
   facts.print(std::cout, json);
 }
 
+void describe_size_sweep(const Lab& lab, const std::string& name, bool json) {
+  const SizeSweep sweep = load_size_sweep(name, lab.size_sweeps, lab.cullers);
+  Facts facts;
+  facts.add("name", sweep.name);
+  facts.add("description", sweep.description);
+  facts.add("dial", sweep.dial);
+  facts.add("unit", sweep.unit);
+  facts.add("values", joined(sweep.values, ", "));
+  facts.add("cost", to_string(sweep.cost) + ": " + sweep.because);
+  for (const SizeMethod& method : sweep.methods) {
+    facts.add("culler " + method.culler, method.parameter + ", default " +
+                                             sweep.values[method.default_value] +
+                                             (method.note.empty() ? "" : "; " + method.note));
+  }
+  for (const Block& block : sweep.blocks) facts.add("block", block.title());
+  facts.print(std::cout, json);
+}
+
 /// The dials of a modelled device stand with the defaults of its preset.
 void describe_device(const std::string& text, bool json) {
   const DeviceSpec device = parse_device(text);
@@ -192,6 +211,10 @@ int describe(const Lab& lab, const std::string& name, bool json) {
   for (const auto& [sweep, description] : list_sweeps(lab.sweeps)) {
     if (sweep != name) continue;
     describe_sweep(lab, name, json);
+    return 0;
+  }
+  if (std::filesystem::is_regular_file(lab.size_sweeps / (name + ".toml"))) {
+    describe_size_sweep(lab, name, json);
     return 0;
   }
   if (describe_metric(name, json)) return 0;

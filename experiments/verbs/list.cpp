@@ -39,6 +39,9 @@ void list_matrices_of(const Lab& lab, bool json) {
   for (const auto& [name, description] : list_sweeps(lab.sweeps)) {
     table.add({name, std::string("stress sweep"), description});
   }
+  for (const auto& [name, description] : list_matrices(lab.size_sweeps)) {
+    table.add({name, std::string("size sweep"), description});
+  }
   table.print(std::cout, json);
 }
 

@@ -17,6 +17,7 @@
 #include "experiments/show/surface_pictures.h"
 #include "experiments/verbs/missing_cells.h"
 #include "experiments/verbs/present_results.h"
+#include "experiments/verbs/size_results.h"
 #include "experiments/verbs/sweep_results.h"
 #include "experiments/verbs/verbs.h"
 
@@ -125,7 +126,10 @@ int report(const Lab& lab, const std::filesystem::path& results,
            const std::filesystem::path& output) {
   const std::vector<JudgedCell> cells = require_present_cells(results, lab.cullers);
   ReportInput input;
-  std::tie(input.blocks, input.sweep_blocks) = split_sweeps(lab, summarise(cells), results);
+  std::vector<BlockSummary> blocks = summarise(cells);
+  input.sizes = size_results(lab, cells, blocks);
+  std::tie(input.blocks, input.sweep_blocks) =
+      split_sweeps(lab, without_size_sweeps(lab, cells, std::move(blocks)), results);
   input.sweeps = sweep_results(lab, results, cells);
   input.published = load_published(lab.published, lab.cullers);
   input.errata = load_errata(lab.errata, lab.cullers);

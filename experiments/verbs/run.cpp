@@ -6,6 +6,7 @@
 #include "common/scene/error.h"
 #include "experiments/devices/device_spec.h"
 #include "experiments/matrix/resolution.h"
+#include "experiments/matrix/size_sweep.h"
 #include "experiments/results/folder_lock.h"
 #include "experiments/run/matrix_runner.h"
 #include "experiments/verbs/present_results.h"
@@ -17,6 +18,7 @@ namespace vislab {
 namespace {
 
 constexpr const char* all_sweeps = "stress";
+constexpr const char* all_size_sweeps = "model_size";
 
 /// What a call asks for.
 struct Work {
@@ -31,7 +33,11 @@ void add_sweep(Work& work, Sweep sweep) {
   work.sweeps.push_back(std::move(sweep));
 }
 
-/// Matrices are looked for before sweeps, and both by name before by file.
+void add_size_sweep(Work& work, const SizeSweep& sweep) {
+  work.blocks.insert(work.blocks.end(), sweep.blocks.begin(), sweep.blocks.end());
+}
+
+/// Matrices are looked for before sweeps, and all by name before by file.
 void add_named(Work& work, const std::string& name, const Lab& lab,
                const std::filesystem::path& results) {
   const auto is_in = [&](const std::filesystem::path& folder) {
@@ -43,15 +49,26 @@ void add_named(Work& work, const std::string& name, const Lab& lab,
     }
     return;
   }
+  if (!is_in(lab.matrices) && name == all_size_sweeps) {
+    for (const SizeSweep& sweep : load_size_sweeps(lab.size_sweeps, lab.cullers)) {
+      add_size_sweep(work, sweep);
+    }
+    return;
+  }
+  if (!is_in(lab.matrices) && is_in(lab.size_sweeps)) {
+    add_size_sweep(work, load_size_sweep(name, lab.size_sweeps, lab.cullers));
+    return;
+  }
   const bool is_file = std::filesystem::is_regular_file(name);
   if (!is_in(lab.matrices) && (is_in(lab.sweeps) || (is_file && is_sweep_file(name)))) {
     add_sweep(work, load_sweep(name, lab.sweeps, results, lab.cullers));
     return;
   }
   if (!is_in(lab.matrices) && !std::filesystem::exists(name)) {
-    std::vector<std::string> known{all_sweeps};
+    std::vector<std::string> known{all_sweeps, all_size_sweeps};
     for (const auto& [matrix, text] : list_matrices(lab.matrices)) known.push_back(matrix);
     for (const auto& [sweep, text] : list_sweeps(lab.sweeps)) known.push_back(sweep);
+    for (const auto& [sweep, text] : list_matrices(lab.size_sweeps)) known.push_back(sweep);
     throw unknown_name("matrix, stress sweep or file", name, known);
   }
   const Matrix matrix = load_matrix(name, lab.matrices, lab.cullers);

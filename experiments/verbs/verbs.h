@@ -18,10 +18,11 @@ struct Lab {
   DataFolders data;
   std::filesystem::path repository;
   std::filesystem::path matrices;
-  std::filesystem::path sweeps;     // experiments/stress
-  std::filesystem::path published;  // figures of the sources
-  std::filesystem::path errata;     // the file of their errata
-  std::filesystem::path report;     // templates
+  std::filesystem::path sweeps;       // experiments/stress
+  std::filesystem::path size_sweeps;  // experiments/model_size
+  std::filesystem::path published;    // figures of the sources
+  std::filesystem::path errata;       // the file of their errata
+  std::filesystem::path report;       // templates
 };
 
 /// `what` is cullers, scenes, matrices, metrics or devices.
@@ -30,7 +31,8 @@ int list(const Lab& lab, const std::string& what, bool json);
 int describe(const Lab& lab, const std::string& name, bool json);
 
 struct RunCall {
-  std::vector<std::string> matrices;  // or stress sweeps; "stress" stands for all sweeps
+  // Or sweeps; "stress" stands for all stress sweeps, "model_size" for all size sweeps.
+  std::vector<std::string> matrices;
   // Instead of matrices: one culler on one scene.
   std::string culler, scene, path;
   std::string resolution = "512x512";
@@ -75,6 +77,10 @@ int compare(const Lab& lab, const std::string& a, const std::string& b,
 int export_results(const Lab& lab, const std::string& format, const std::filesystem::path& results);
 int report(const Lab& lab, const std::filesystem::path& results,
            const std::filesystem::path& output);
+/// The knees of all size sweeps that were run: the smallest models that are nearly as efficient as
+/// the best. Written to `written` as data/knees.toml has them, unless that is empty.
+int knees(const Lab& lab, const std::filesystem::path& results,
+          const std::filesystem::path& written, bool json);
 /// The break points of all stress sweeps that were run. 1 if a promise is broken, or a method
 /// breaks that never should.
 int atlas(const Lab& lab, const std::filesystem::path& results, bool json);
@@ -88,8 +94,8 @@ int check_all(const Lab& lab, bool json);
 /// of them or none. Throws InputError for names that are taken or cannot be, and outside of a
 /// checkout.
 int new_culler(const Lab& lab, const std::string& name);
-/// The answers of matrix smoke against the committed ones: 1 if any differ. `write` commits those in
-/// `results` instead.
+/// The answers of matrix smoke against the committed ones: 1 if any differ. `write` commits those
+/// in `results` instead.
 int baseline(const Lab& lab, const std::filesystem::path& results, bool write, bool json);
 /// Do the cells and portals of a scene fit together, and do surfaces close them? 1 if not.
 int check_scene(const Lab& lab, const std::string& scene, bool json);

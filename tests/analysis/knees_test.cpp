@@ -1,0 +1,176 @@
+#include "experiments/analysis/knees.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/scene/error.h"
+#include "experiments/analysis/knees_file.h"
+
+namespace vislab {
+namespace {
+
+const std::vector<std::string> values{"1", "2", "4", "8"};
+
+SizeSweep sweep_on(const std::vector<std::string>& scenes, SizeCost cost) {
+  SizeSweep sweep;
+  sweep.name = "test_depth";
+  sweep.dial = "depth of a test";
+  sweep.cost = cost;
+  sweep.values = values;
+  SizeMethod method;
+  method.culler = "test.tree";
+  method.parameter = "depth";
+  for (const std::string& value : values) method.chains.push_back("test.tree[depth=" + value + "]");
+  method.default_value = 2;
+  sweep.methods.push_back(method);
+  for (const std::string& scene : scenes) {
+    Block block;
+    block.scene = scene;
+    sweep.blocks.push_back(block);
+  }
+  return sweep;
+}
+
+/// What one value costs: the efficiency that is measured, and the bytes.
+struct Measured {
+  double efficiency = 1.0;
+  std::uint64_t bytes = 0, false_px = 0;
+};
+
+/// A block whose cells are those of the sweep's only method.
+BlockSummary block_of(const SizeSweep& sweep, const std::vector<Measured>& measured) {
+  BlockSummary block;
+  block.context["cpu"] = "a processor";
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    CellSummary cell;
+    cell.canonical = sweep.methods.front().chains[i];
+    cell.judged = true;
+    cell.bytes = measured[i].bytes;
+    cell.false_px = measured[i].false_px;
+    cell.build_ms = 2.0;
+    const double e = measured[i].efficiency;
+    cell.efficiency = {e, 0.99 * e, 1.01 * e};
+    cell.update_us.median = {0.0, 0.0, 0.0};
+    cell.cull_us.median = {100.0 / e, 99.0 / e, 101.0 / e};
+    block.cells.push_back(cell);
+  }
+  return block;
+}
+
+SizeResult knees_of(const SizeSweep& sweep, const std::vector<BlockSummary>& blocks) {
+  return find_knees(sweep, [&](std::size_t block, const std::string& chain) -> SizeCell {
+    if (block >= blocks.size()) return {};
+    for (const CellSummary& cell : blocks[block].cells) {
+      if (cell.canonical == chain) return {&blocks[block], &cell};
+    }
+    return {};
+  });
+}
+
+SizeCurve curve_of(const std::vector<Measured>& measured, SizeCost cost = SizeCost::frame_ms) {
+  const SizeSweep sweep = sweep_on({"one", "two"}, cost);
+  const BlockSummary block = block_of(sweep, measured);
+  return knees_of(sweep, {block, block}).verdicts.front().scenes.front();
+}
+
+TEST(Knees, TheKneeIsTheSmallestModelWithinFivePercentOfTheBest) {
+  const SizeCurve curve = curve_of({{0.60, 10, 0}, {0.77, 20, 0}, {0.80, 40, 0}, {0.79, 80, 0}});
+  ASSERT_TRUE(curve.best && curve.knee);
+  EXPECT_EQ(*curve.best, 2U);
+  EXPECT_EQ(*curve.knee, 1U) << ".77 / .80 is .9625";
+  EXPECT_NEAR(curve.points[0].relative, 0.75, 1e-12);
+}
+
+TEST(Knees, AModelThatIsWrongInMorePixelsThanTheBestIsNoKnee) {
+  const SizeCurve curve = curve_of({{0.79, 10, 3}, {0.78, 20, 1}, {0.80, 40, 1}, {0.80, 80, 0}});
+  EXPECT_EQ(*curve.knee, 1U);
+}
+
+TEST(Knees, SmallerIsWhatHoldsFewerBytesWhateverTheOrderOfTheValues) {
+  const SizeCurve curve = curve_of({{0.80, 80, 0}, {0.80, 40, 0}, {0.79, 20, 0}, {0.30, 10, 0}});
+  EXPECT_EQ(*curve.knee, 2U);
+}
+
+TEST(Knees, WhereBytesAreTheSameTheFirstValueIsTheSmallest) {
+  const SizeCurve curve = curve_of({{0.5, 8, 0}, {0.77, 8, 0}, {0.80, 8, 0}, {0.80, 8, 0}});
+  EXPECT_EQ(*curve.knee, 1U);
+}
+
+TEST(Knees, DecisionsAreComparedWithTheSoonest) {
+  const SizeCurve curve =
+      curve_of({{0.2, 1, 0}, {0.4, 2, 0}, {0.39, 3, 0}, {0.1, 4, 0}}, SizeCost::decision_us);
+  EXPECT_EQ(*curve.knee, 1U);
+  EXPECT_NEAR(curve.points[1].efficiency.value, 1.0, 1e-12);
+  EXPECT_NEAR(curve.points[0].efficiency.value, 0.5, 1e-12);
+  EXPECT_NEAR(curve.points[0].cost, 500.0, 1e-9) << "microseconds";
+}
+
+TEST(Knees, TheCommonKneeIsThatOfTheGeometricMean) {
+  const SizeSweep sweep = sweep_on({"one", "two"}, SizeCost::frame_ms);
+  // The first scene alone is content with the first value, the second asks for the third.
+  const std::vector<BlockSummary> blocks{
+      block_of(sweep, {{0.96, 1, 0}, {0.97, 2, 0}, {0.99, 3, 0}, {1.00, 4, 0}}),
+      block_of(sweep, {{0.20, 1, 0}, {0.25, 2, 0}, {0.40, 3, 0}, {0.41, 4, 0}})};
+  const SizeResult result = knees_of(sweep, blocks);
+  const SizeVerdict& verdict = result.verdicts.front();
+  EXPECT_EQ(*verdict.scenes[0].knee, 0U);
+  EXPECT_EQ(*verdict.scenes[1].knee, 2U);
+  ASSERT_TRUE(verdict.common.knee);
+  EXPECT_EQ(*verdict.common.knee, 2U);
+  EXPECT_NEAR(verdict.common.points[3].efficiency.value, std::sqrt(1.00 * 0.41), 1e-12);
+  EXPECT_EQ(verdict.common.points[3].bytes, 8U) << "of both scenes";
+  EXPECT_TRUE(verdict.default_is_knee());
+  EXPECT_EQ(result.machine, "a processor");
+  EXPECT_TRUE(result.is_complete());
+}
+
+TEST(Knees, WhatIsMissingIsAGapWithItsReasonAndLeavesTheOthers) {
+  const SizeSweep sweep = sweep_on({"one", "two"}, SizeCost::frame_ms);
+  std::vector<BlockSummary> blocks{
+      block_of(sweep, {{0.5, 1, 0}, {0.79, 2, 0}, {0.80, 3, 0}, {0.80, 4, 0}}),
+      block_of(sweep, {{0.5, 1, 0}, {0.79, 2, 0}, {0.80, 3, 0}, {0.80, 4, 0}})};
+  blocks[0].cells.erase(blocks[0].cells.begin() + 1);
+  blocks[1].cells[3].status = ResultCell::Status::failed;
+  blocks[1].cells[3].reason = "out of memory";
+  const SizeVerdict verdict = knees_of(sweep, blocks).verdicts.front();
+  EXPECT_EQ(verdict.scenes[0].points[1].gap, "not run");
+  EXPECT_EQ(verdict.common.points[1].gap, "one: not run");
+  EXPECT_EQ(verdict.common.points[3].gap, "two: failed: out of memory");
+  EXPECT_EQ(*verdict.scenes[0].knee, 2U);
+  EXPECT_EQ(*verdict.common.knee, 2U);
+  EXPECT_FALSE(knees_of(sweep, blocks).is_complete());
+}
+
+TEST(Knees, NothingMeasuredIsNoKnee) {
+  const SizeResult result = knees_of(sweep_on({"one", "two"}, SizeCost::frame_ms), {});
+  EXPECT_FALSE(result.was_measured());
+  EXPECT_FALSE(result.verdicts.front().common.knee);
+  EXPECT_FALSE(result.verdicts.front().default_is_knee());
+}
+
+TEST(KneesFile, IsWrittenOnlyWhenNothingIsMissing) {
+  const SizeSweep sweep = sweep_on({"one", "two"}, SizeCost::frame_ms);
+  const BlockSummary whole =
+      block_of(sweep, {{0.5, 1, 0}, {0.79, 2, 0}, {0.80, 3, 0}, {0.80, 4, 0}});
+  const std::string text = knees_text({knees_of(sweep, {whole, whole})});
+  EXPECT_NE(text.find("culler = \"test.tree\"\nparameter = \"depth\"\ndefault = \"4\"\nknee = "
+                      "\"2\"\nsweep = \"test_depth\"\ncost = \"frame_ms\"\nmachine = \"a "
+                      "processor\""),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("scene = \"two\"\nknee = \"2\"\nbest = \"4\""), std::string::npos) << text;
+  BlockSummary part = whole;
+  part.cells.pop_back();
+  try {
+    knees_text({knees_of(sweep, {whole, part})});
+    FAIL() << "a knee of something that was not measured";
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("test_depth (test.tree at 8, two: not run)"), std::string::npos)
+        << message;
+  }
+}
+
+}  // namespace
+}  // namespace vislab
