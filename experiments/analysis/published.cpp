@@ -1,6 +1,7 @@
 #include "experiments/analysis/published.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "experiments/matrix/toml_keys.h"
 
@@ -169,8 +170,15 @@ const CellSummary* find_cell(const BlockSummary& block, const std::string& chain
   return found == block.cells.end() ? nullptr : &*found;
 }
 
+/// Errors of both are independent, and of ratios: they add up as squares of logarithms.
 Estimate quotient(const Estimate& above, const Estimate& below) {
-  return {above.value / below.value, above.low / below.high, above.high / below.low};
+  const double value = above.value / below.value;
+  if (!(above.low > 0.0) || !(below.low > 0.0)) return {value, value, value};
+  const double down =
+      std::hypot(std::log(above.value / above.low), std::log(below.high / below.value));
+  const double up =
+      std::hypot(std::log(above.high / above.value), std::log(below.value / below.low));
+  return {value, value * std::exp(-down), value * std::exp(up)};
 }
 
 /// NaN if a part of it was not measured.

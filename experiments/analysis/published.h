@@ -83,8 +83,8 @@ struct OwnFigure {
   const BlockSummary* block = nullptr;
   const CellSummary* cell = nullptr;
   /// Our figure (see the head of this file). frame_ms against none is paired by frame and round;
-  /// other quotients of times are those of two such ratios, or of the medians of cull_us, with the
-  /// widest interval that they allow; whatever is no time has no interval. NaN for 0 against 0.
+  /// other quotients of times are those of two such ratios, or of the medians of cull_us, and the
+  /// errors of both add up; whatever is no time has no interval. NaN for 0 against 0.
   Estimate ratio = Estimate::none();
 };
 
