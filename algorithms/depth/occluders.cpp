@@ -21,7 +21,7 @@ std::vector<ParameterSpec> OccluderBudget::parameters() {
       ParameterSpec::real("occluder_px", 4.0, 0.0, 1e9, "pixels", stage,
                           "visible objects whose box covers fewer pixels of the image are not "
                           "drawn into the buffer; greater is cheaper and hides less"),
-      ParameterSpec::integer("occluder_triangles", 1'000'000, 0, 1'000'000'000, "triangles", stage,
+      ParameterSpec::integer("occluder_triangles", 100'000, 0, 1'000'000'000, "triangles", stage,
                              "so many triangles at most are drawn into the buffer in a frame; "
                              "fewer hide less")};
 }

@@ -58,7 +58,7 @@ void write_verdict(const SizeResult& result, const SizeVerdict& verdict, std::os
   if (!verdict.method.note.empty()) out << "note = " << quoted(verdict.method.note) << '\n';
   out << "sweep = " << quoted(sweep.name) << "\ncost = " << quoted(to_string(sweep.cost))
       << "\nmachine = " << quoted(result.machine) << "\nregenerate = "
-      << quoted("vislab run " + sweep.name + " && vislab knees --write data/knees.toml") << '\n';
+      << quoted("vislab run model_size && vislab knees --write data/knees.toml") << '\n';
   for (const SizeCurve& scene : verdict.scenes) write_scene(sweep, verdict, scene, out);
 }
 

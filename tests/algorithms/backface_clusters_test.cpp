@@ -451,7 +451,7 @@ TEST(BackfaceClusters, FindNothingAboutTheOriginOfAMeshFarAway) {
         made.finish();
         return made;
       }();
-      CullerRun run(std::string(name) + "[origin=" + origin + "]", scene);
+      CullerRun run(std::string(name) + "[size=64,origin=" + origin + "]", scene);
       const test::FacingCounts counts =
           counts_of(run, scene, camera_at({0.0, 1.0, 3.0}, {0.0, 0.0, 0.0}));
       EXPECT_TRUE(counts.all_right());
