@@ -68,10 +68,10 @@ struct Panel {
   ChartAxis axis;
 };
 
+/// Only the anchors have their looks yet.
 std::vector<Mark> marks_of(const BlockSummary& block, const ChartChoice& takes) {
   const std::vector<const CellSummary*> charted = charted_cells(block);
   std::vector<Mark> marks;
-  std::size_t methods = 0;
   std::size_t oracles = 0;
   for (std::size_t i = 0; i < block.cells.size(); ++i) {
     const CellSummary& cell = block.cells[i];
@@ -86,10 +86,6 @@ std::vector<Mark> marks_of(const BlockSummary& block, const ChartChoice& takes) 
       mark.shape = cell.replicate == 0 ? none_shape : none_again_shape;
     } else if (cell.anchor) {
       mark.shape = oracle_shapes[oracles++ % oracle_shapes.size()];
-    } else {
-      const Look look = method_look(methods++);
-      mark.colour = look.colour;
-      mark.shape = look.shape;
     }
     marks.push_back(mark);
   }

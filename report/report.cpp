@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <map>
+#include <memory>
 #include <sstream>
 
 #include "common/scene/error.h"
@@ -78,6 +80,33 @@ void write_text(const fs::path& file, const std::string& text) {
   stream << text;
   stream.close();
   if (!stream) throw InputError(file.string() + " cannot be written");
+}
+
+using DrawPicture = decltype(ReportInput::picture);
+
+/// Several parts may show the same picture: it is drawn once, and copied.
+DrawPicture drawn_once(const DrawPicture& draw) {
+  struct Drawn {
+    std::string caption, error;
+    fs::path file;
+  };
+  if (!draw) return draw;
+  const auto all = std::make_shared<std::map<std::string, Drawn>>();
+  return [all, draw](const BlockSummary& block, const CellSummary& cell, const fs::path& file) {
+    const auto [found, is_new] = all->try_emplace(block.scene_hash + block.path_hash + cell.id);
+    Drawn& drawn = found->second;
+    if (is_new) {
+      drawn.file = file;
+      try {
+        drawn.caption = draw(block, cell, file);
+      } catch (const InputError& error) {
+        drawn.error = error.what();
+      }
+    }
+    if (!drawn.error.empty()) throw InputError(drawn.error);
+    if (drawn.file != file) fs::copy_file(drawn.file, file, fs::copy_options::overwrite_existing);
+    return drawn.caption;
+  };
 }
 
 void draw_charts(const ReportInput& input, const QueryFindings& queries,
@@ -184,8 +213,10 @@ void publish(const fs::path& work, const fs::path& folder) {
 
 }  // namespace
 
-void write_report(const ReportInput& input, const fs::path& template_folder,
+void write_report(const ReportInput& given, const fs::path& template_folder,
                   const fs::path& folder) {
+  ReportInput input = given;
+  input.picture = drawn_once(given.picture);
   const bool no_sweep =
       std::ranges::none_of(input.sweeps, [](const SweepResult& s) { return s.was_measured(); });
   if (input.blocks.empty() && no_sweep &&

@@ -15,23 +15,8 @@ namespace {
 constexpr const char* portal_method = "portal.polygon";
 constexpr const char* detail_method = "detail.screen_size";
 constexpr double least_threshold_px = 4.0;
+constexpr double largest_detail = 0.01;  // of the image
 constexpr std::size_t frames_looked_at = 12;
-
-VisibleSet kept_by(const Registry& cullers, const std::string& chain, const Scene& scene,
-                   const Frame& frame) {
-  const std::unique_ptr<ICuller> culler = cullers.make(chain);
-  culler->build(scene, BuildContext{});
-  culler->reset(1);
-  culler->update(frame, {});
-  RecordingSink sink;
-  sink.start(scene, frame);
-  culler->cull(frame, Candidates::everything(), sink);
-  return sink.set();
-}
-
-bool keeps_object(const Scene& scene, const VisibleSet& kept, ObjectId object) {
-  return kept.intersects(scene.first_triangle(object), scene.triangle_count(object));
-}
 
 bool outside_a_plane(const Frustum& frustum, const std::array<glm::dvec3, 3>& corners) {
   return std::ranges::any_of(frustum.span(), [&](const Plane& plane) {
@@ -49,24 +34,12 @@ bool faces_away(const Camera& camera, const std::array<glm::dvec3, 3>& corners, 
   return glm::dot(normal, to_eye) < 0.0;
 }
 
-/// Moves what detail culling leaves out to that kind, at the least threshold that does.
-void add_detail(const Scene& scene, const Frame& frame, const Registry& cullers,
-                FrameKinds& found) {
-  const double most = 0.01 * frame.viewport.width * frame.viewport.height;
-  for (double px = least_threshold_px; px <= most && found.detail_px == 0.0; px *= 4.0) {
-    const std::string chain =
-        std::string(detail_method) + "[threshold_px=" + std::to_string(static_cast<int>(px)) + "]";
-    const VisibleSet kept = kept_by(cullers, chain, scene, frame);
-    for (const ObjectId object : frame.objects.shown) {
-      if (keeps_object(scene, kept, object)) continue;
-      const TriangleId first = scene.first_triangle(object);
-      for (TriangleId id = first; id < first + scene.triangle_count(object); ++id) {
-        if (found.kinds[id] != CullingKind::drawn) continue;
-        found.kinds[id] = CullingKind::detail;
-        found.detail_px = px;
-      }
-    }
-  }
+std::unique_ptr<ICuller> built(const Registry& cullers, const std::string& chain,
+                               const Scene& scene) {
+  std::unique_ptr<ICuller> culler = cullers.make(chain);
+  culler->build(scene, BuildContext{});
+  culler->reset(1);
+  return culler;
 }
 
 std::size_t kinds_in(const FrameKinds& found) {
@@ -96,22 +69,37 @@ std::array<std::string, culling_kind_count> notes_of(const FrameKinds& found) {
 
 }  // namespace
 
-FrameKinds kinds_of_frame(const Scene& scene, const Frame& frame, const FrameTruth& truth,
-                          const Registry& cullers) {
+KindFinder::KindFinder(const Scene& scene, const Viewport& viewport, const Registry& cullers)
+    : scene_(&scene) {
+  if (!scene.cells.empty()) portal_ = built(cullers, portal_method, scene);
+  const double most = largest_detail * viewport.width * viewport.height;
+  for (double px = least_threshold_px; px <= most; px *= 4.0) {
+    const std::string chain =
+        std::string(detail_method) + "[threshold_px=" + std::to_string(static_cast<int>(px)) + "]";
+    detail_.push_back({px, built(cullers, chain, scene)});
+  }
+}
+
+void KindFinder::update(const Frame& frame, const Changes& changes) {
+  if (portal_) portal_->update(frame, changes);
+  for (const DetailCuller& detail : detail_) detail.culler->update(frame, changes);
+}
+
+FrameKinds KindFinder::find(const Frame& frame, const FrameTruth& truth) {
   FrameKinds found;
-  found.kinds.assign(scene.triangle_count(), CullingKind::drawn);
-  std::vector<std::uint8_t> is_visible(scene.triangle_count(), 0);
+  found.kinds.assign(scene_->triangle_count(), CullingKind::drawn);
+  std::vector<std::uint8_t> is_visible(scene_->triangle_count(), 0);
   for (const TriangleId id : truth.visible()) is_visible[id] = 1;
   std::optional<VisibleSet> reached;
-  if (!scene.cells.empty()) reached = kept_by(cullers, portal_method, scene, frame);
+  if (portal_) reached = kept_by(*portal_, frame);
   const Frustum frustum = frustum_of(frame.camera);
   for (const ObjectId object : frame.objects.shown) {
-    const Mesh& mesh = scene.mesh_of(object);
+    const Mesh& mesh = scene_->mesh_of(object);
     const glm::dmat4x3& transform = frame.objects.transforms[object];
     const bool mirrored = determinant(transform) < 0.0;
-    const bool unreached = reached && !keeps_object(scene, *reached, object);
+    const bool unreached = reached && !keeps_object(*reached, object);
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-      const TriangleId id = scene.first_triangle(object) + i;
+      const TriangleId id = scene_->first_triangle(object) + i;
       if (is_visible[id] != 0) continue;
       const auto corners = world_triangle(mesh, transform, i);
       found.kinds[id] = outside_a_plane(frustum, corners) ? CullingKind::view_frustum
@@ -121,14 +109,42 @@ FrameKinds kinds_of_frame(const Scene& scene, const Frame& frame, const FrameTru
                             : CullingKind::occlusion;
     }
   }
-  add_detail(scene, frame, cullers, found);
+  add_detail(frame, found);
   for (const ObjectId object : frame.objects.shown) {
-    const TriangleId first = scene.first_triangle(object);
-    for (TriangleId id = first; id < first + scene.triangle_count(object); ++id) {
+    const TriangleId first = scene_->first_triangle(object);
+    for (TriangleId id = first; id < first + scene_->triangle_count(object); ++id) {
       ++found.counts[static_cast<std::size_t>(found.kinds[id])];
     }
   }
   return found;
+}
+
+VisibleSet KindFinder::kept_by(ICuller& culler, const Frame& frame) const {
+  RecordingSink sink;
+  sink.start(*scene_, frame);
+  culler.cull(frame, Candidates::everything(), sink);
+  return sink.set();
+}
+
+bool KindFinder::keeps_object(const VisibleSet& kept, ObjectId object) const {
+  return kept.intersects(scene_->first_triangle(object), scene_->triangle_count(object));
+}
+
+/// Moves what detail culling leaves out to that kind, at the least threshold that does.
+void KindFinder::add_detail(const Frame& frame, FrameKinds& found) {
+  for (const DetailCuller& detail : detail_) {
+    const VisibleSet kept = kept_by(*detail.culler, frame);
+    for (const ObjectId object : frame.objects.shown) {
+      if (keeps_object(kept, object)) continue;
+      const TriangleId first = scene_->first_triangle(object);
+      for (TriangleId id = first; id < first + scene_->triangle_count(object); ++id) {
+        if (found.kinds[id] != CullingKind::drawn) continue;
+        found.kinds[id] = CullingKind::detail;
+        found.detail_px = detail.threshold_px;
+      }
+    }
+    if (found.detail_px > 0.0) return;
+  }
 }
 
 KindsPicture write_stored_kinds(const std::filesystem::path& results, const Registry& cullers,
@@ -145,16 +161,16 @@ KindsPicture write_stored_kinds(const std::filesystem::path& results, const Regi
   std::optional<std::size_t> best_frame;
   FrameKinds best;
   SceneState state(stored.scene);
+  KindFinder finder(stored.scene, block.viewport, cullers);
   const auto visit_all = [&](auto&& visit) {
-    for_each_frame(
-        stored.path, state, block.viewport,
-        [&](std::size_t index, const Frame& frame, const Changes&) { visit(index, frame); });
+    for_each_frame(stored.path, state, block.viewport, visit);
   };
-  visit_all([&](std::size_t index, const Frame& frame) {
+  visit_all([&](std::size_t index, const Frame& frame, const Changes& changes) {
+    finder.update(frame, changes);
     if (index % step != 0 || index >= cell->frames.size()) return;
     const std::optional<FrameTruth> truth = truths.load(cell->frames[index].truth);
     if (!truth) throw InputError("the truth of cell " + id + " is missing; run the matrix again");
-    FrameKinds found = kinds_of_frame(stored.scene, frame, *truth, cullers);
+    FrameKinds found = finder.find(frame, *truth);
     if (!best_frame ||
         std::pair(kinds_in(found), rarest(found)) > std::pair(kinds_in(best), rarest(best))) {
       best_frame = index;
@@ -166,7 +182,7 @@ KindsPicture write_stored_kinds(const std::filesystem::path& results, const Regi
   picture.place = block.scene + ", " + block.path + ", frame " + std::to_string(*best_frame);
   picture.kinds = kinds_in(best);
   picture.detail_px = best.detail_px;
-  visit_all([&](std::size_t index, const Frame& frame) {
+  visit_all([&](std::size_t index, const Frame& frame, const Changes&) {
     if (index != *best_frame) return;
     KindsPictureInput input;
     input.scene = &stored.scene;

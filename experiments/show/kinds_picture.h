@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,12 +19,33 @@ struct FrameKinds {
   double detail_px = 0.0;  // the threshold at which detail culling left anything out; 0: it did not
 };
 
-/// Of each triangle, the first of these that leaves it out: it lies outside a plane of the frustum;
-/// the walk through cells and portals does not reach it; it faces away, on a solid mesh; truth does
-/// not see it; and the object is no larger in the image than the least threshold, of 4, 16, 64 …
-/// pixels up to a hundredth of the image, at which anything visible is.
-FrameKinds kinds_of_frame(const Scene& scene, const Frame& frame, const FrameTruth& truth,
-                          const Registry& cullers);
+/// Says of each triangle which kind leaves it out: the first of these that does. It lies outside a
+/// plane of the frustum; the walk through cells and portals does not reach it; it faces away, on a
+/// solid mesh; truth does not see it; or its object is no larger in the image than the least
+/// threshold, of 4, 16, 64 … pixels up to a hundredth of the image, at which anything visible is.
+class KindFinder {
+ public:
+  /// Builds the cullers that it asks. Scene and registry outlive it.
+  KindFinder(const Scene& scene, const Viewport& viewport, const Registry& cullers);
+
+  /// To be called for every frame of a path, in their order.
+  void update(const Frame& frame, const Changes& changes);
+  FrameKinds find(const Frame& frame, const FrameTruth& truth);
+
+ private:
+  struct DetailCuller {
+    double threshold_px = 0.0;
+    std::unique_ptr<ICuller> culler;
+  };
+
+  VisibleSet kept_by(ICuller& culler, const Frame& frame) const;
+  bool keeps_object(const VisibleSet& kept, ObjectId object) const;
+  void add_detail(const Frame& frame, FrameKinds& found);
+
+  const Scene* scene_;
+  std::unique_ptr<ICuller> portal_;   // null for a scene without cells
+  std::vector<DetailCuller> detail_;  // by ascending threshold
+};
 
 struct KindsPicture {
   std::string place;       // scene, path and frame
