@@ -1,10 +1,8 @@
-// The report's sections that put methods beside each other across scenes: which one to use, and what
-// the sources published.
+// The report's sections that put methods beside each other across scenes.
 #pragma once
 
 #include <vector>
 
-#include "experiments/analysis/published.h"
 #include "report/report.h"
 #include "report/template.h"
 
@@ -16,10 +14,6 @@ std::vector<Fields> guide_fields(const std::vector<BlockSummary>& blocks);
 /// One entry for each block with methods that paint an image themselves, for templates/surfaces.md.
 /// Pictures go into `folder`.
 std::vector<Fields> surface_fields(const ReportInput& input, const std::filesystem::path& folder);
-
-/// One entry for each source of which any figure has its own beside it, for templates/published.md.
-std::vector<Fields> published_fields(const std::vector<PublishedFigures>& published,
-                                     const std::vector<BlockSummary>& blocks);
 
 /// One entry for each machine and figure of the table of costs, for templates/measurement.md.
 std::vector<Fields> cost_fields(const std::vector<BlockSummary>& blocks);

@@ -14,15 +14,18 @@
 #include "report/cell_section.h"
 #include "report/chains_section.h"
 #include "report/chart.h"
+#include "report/claims_section.h"
 #include "report/errata_section.h"
 #include "report/family_section.h"
 #include "report/introduction_section.h"
+#include "report/main_chart.h"
 #include "report/method_fields.h"
 #include "report/model_size_section.h"
 #include "report/persistence_section.h"
 #include "report/process.h"
 #include "report/query_section.h"
 #include "report/sections.h"
+#include "report/summary_section.h"
 #include "report/sweep_chart.h"
 #include "report/sweep_section.h"
 
@@ -40,8 +43,8 @@ constexpr const char* persistence_file = "persistence.json";
 /// The report's parts in their order; each is templates/NAME.md, and is left out where there is no
 /// such file.
 constexpr const char* parts[] = {
-    "summary", "front",    "introduction", "floor",   "depth",     "persistence", "families",
-    "cells",   "surfaces", "queries",      "scenes",  "published", "chains",      "model_size",
+    "front",    "introduction", "floor",   "depth",     "persistence", "families",
+    "cells",   "surfaces", "queries",      "scenes",  "chains",      "model_size",
     "sweeps",  "claims",   "errata",       "methods", "metrics",   "measurement"};
 
 /// A folder for work in progress, gone with this object.
@@ -128,6 +131,7 @@ void draw_charts(const ReportInput& input, const QueryFindings& queries,
   }
   script += size_charts_script(input.sizes);
   script += query_chart_script(queries);
+  if (has_main_chart(input.blocks)) script += main_chart_script(input.blocks, main_chart_file);
   if (script.empty()) return;
   write_text(work / "charts.gnuplot", script);
   run_program(gnuplot, {"charts.gnuplot"}, work, time_limit);
@@ -146,7 +150,9 @@ void write_words(const ReportInput& input, const QueryFindings& queries,
   add_cell_fields(input, work, fields);
   add_model_size_fields(input.sizes, fields);
   add_chain_fields(input, fields);
+  add_claim_fields(input, fields);
   add_errata_fields(input, work, fields);
+  add_summary_fields(input, fields);
   add_introduction_fields(input, queries.diagram_blocks(), work, fields);
   add_family_fields(input, queries.diagram_blocks(), of_families, families, folder / "families",
                     work, fields);
@@ -158,10 +164,17 @@ void write_words(const ReportInput& input, const QueryFindings& queries,
     text += fill_template(read_template(file), fields, file.string()) + "\n";
   }
   write_text(work / "report.md", text);
+  const fs::path summary = folder / "summary.md";
+  write_text(work / "summary.md",
+             fill_template(read_template(summary), fields, summary.string()));
 }
 
 void make_page(const fs::path& templates, const fs::path& work) {
   const fs::path absolute = fs::absolute(templates);
+  run_program(pandoc,
+              {"summary.md", "--from=markdown-implicit_header_references", "--to=html5",
+               "--columns=10000", "--output=summary.html"},
+              work, time_limit);
   run_program(pandoc,
               {"report.md", "--from=markdown-implicit_header_references", "--to=html5",
                "--metadata-file=" + (absolute / "page.yaml").string(),
@@ -170,6 +183,7 @@ void make_page(const fs::path& templates, const fs::path& work) {
                "--bibliography=" + (absolute / "bibliography.bib").string(),
                "--csl=" + (absolute / "numbered.csl").string(), "--citeproc", "--mathml",
                "--standalone", "--self-contained", "--toc", "--toc-depth=2", "--number-sections",
+               "--include-before-body=summary.html",
                // Tables keep the widths that their content asks for.
                "--columns=10000", "--output=index.html"},
               work, time_limit);

@@ -380,8 +380,6 @@ Fields report_fields(const ReportInput& input, const std::string& verdict_templa
   fields.values["diagram_floor"] = format_of(floor.disputed, floor.pixels);
   fields.values["diagram_undisputed"] = format_count(floor.undisputed);
   add_depth_fields(input, in_diagrams, folder, fields);
-  fields.lists["published"] = published_fields(input.published, input.blocks);
-  fields.flag("has_published", !fields.lists["published"].empty());
   fields.lists["surfaces"] = surface_fields(input, folder);
   fields.flag("has_surfaces", !fields.lists["surfaces"].empty());
   fields.lists["sweeps"] = sweep_fields(input.sweeps);

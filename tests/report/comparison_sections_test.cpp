@@ -96,28 +96,6 @@ TEST(GuideSection, GivesOneSentenceOfAdviceAndARowAScene) {
   EXPECT_EQ(guides[0].lists.at("rows")[0].values.at("moving"), "–");
 }
 
-TEST(PublishedSection, ShowsSharesInPercentAndSaysWhyAFigureCannotBeTold) {
-  BlockSummary block = fabricated_block("bunny");
-  CellSummary cell = fabricated_cell("backface.a", 0.5, 0, 1.0);
-  cell.submitted_triangles = 0.55 * block.cells[0].submitted_triangles;
-  block.cells.push_back(cell);
-  PublishedRow share{"share",      "abstract", 0.0,          0.0,    "bunny",     "orbit",
-                     "backface.a", "none",     "backface.a", "none", "30 to 55 %"};
-  share.metric = PublishedRow::Metric::culled;
-  share.compares = false;
-  PublishedRow untold{"another", "abstract", 0.0, 0.0, "", "", "", ""};
-  untold.published = "7 %";
-  untold.cannot_be_told = "the model is not to be had";
-  const std::vector<Fields> entries =
-      published_fields({{"Title", "Source", "", {share, untold}}}, {block});
-  ASSERT_EQ(entries.size(), 1U);
-  const auto& rows = entries[0].lists.at("rows");
-  EXPECT_TRUE(rows[0].values.at("own").starts_with("45")) << rows[0].values.at("own");
-  EXPECT_EQ(rows[0].values.at("method"), "`backface.a`, share of all triangles");
-  EXPECT_EQ(rows[1].values.at("own"), "cannot be told");
-  EXPECT_EQ(rows[1].values.at("method"), "the model is not to be had");
-}
-
 TEST(CostsSection, HasARowForEachFigureOfEveryMachine) {
   BlockSummary first = fabricated_block("first");
   BlockSummary second = fabricated_block("second");
@@ -144,26 +122,6 @@ TEST(CostsSection, CountsTheCellsThatHaveNone) {
   block.cells.front().calibrated = true;
   block.cells.back().rounds = 0;
   EXPECT_EQ(count_uncalibrated({block}), cells - 2);
-}
-
-TEST(PublishedSection, RowsWithoutCellsSaySoAndSourcesWithoutAnyAreLeftOut) {
-  BlockSummary block = fabricated_block("mixed");
-  block.cells.push_back(fabricated_cell("frustum.flat", 0.5, 0, 1.0));
-  PublishedFigures figures{"Thesis", "Somebody 2016", "odd", {}};
-  figures.rows.push_back({"moving", "5.2", 50.0, 60.0, "mixed", "orbit", "frustum.flat", "none",
-                          "frustum.flat", "none"});
-  figures.rows.push_back({"still", "5.3", 50.0, 60.0, "mixed", "still", "frustum.flat", "none",
-                          "frustum.flat", "none"});
-  const std::vector<Fields> entries = published_fields({figures}, {block});
-  ASSERT_EQ(entries.size(), 1U);
-  const auto& rows = entries[0].lists.at("rows");
-  EXPECT_EQ(rows[0].values.at("published"), "1.20");
-  EXPECT_NE(rows[0].values.at("own").find("2.00"), std::string::npos);
-  EXPECT_EQ(rows[1].values.at("own"), "not run");
-  EXPECT_EQ(rows[0].values.at("scene"), R"(mixed\, orbit\, 512 × 512\, 60 frames)");
-  EXPECT_EQ(rows[1].values.at("scene"), R"(mixed\, still)");
-  figures.rows.erase(figures.rows.begin());
-  EXPECT_TRUE(published_fields({figures}, {block}).empty());
 }
 
 TEST(DepthSection, HasARowForEachSceneAndPathAndThePictureOfTheDeepest) {

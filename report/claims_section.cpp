@@ -1,0 +1,138 @@
+#include "report/claims_section.h"
+
+#include <array>
+#include <cmath>
+
+#include "report/format.h"
+
+namespace vislab {
+namespace {
+
+/// "mixed, mixed_moving, 512 × 512, 24 frames": what our figure was measured on.
+std::string place_of(const PublishedRow& row, const OwnFigure& own) {
+  std::string place;
+  if (own.block == nullptr) {
+    place = row.scene + (row.path.empty() ? "" : ", " + row.path);
+  } else {
+    const BlockSummary& block = *own.block;
+    place = block.scene + (block.path.empty() ? "" : ", " + block.path) + ", " +
+            std::to_string(block.viewport.width) + " × " + std::to_string(block.viewport.height) +
+            ", " + std::to_string(block.frames) + " frames";
+    if (!row.device.empty()) place += ", " + block.device;
+  }
+  return row.stand_in.empty() ? place : place + ": " + row.stand_in;
+}
+
+std::string own_text(const PublishedRow& row, const OwnFigure& own) {
+  if (own.cell == nullptr) return "–";
+  if (row.is_share()) return format_percent(own.ratio.value);
+  if (!row.compares) return format_number(own.ratio.value);
+  return own.ratio.low < own.ratio.high ? format_estimate(own.ratio)
+                                        : format_number(own.ratio.value);
+}
+
+/// "0.2 to 0.5", "at least 1", "at most 1": what of ours confirms the claim.
+std::string accept_text(const PublishedRow& row) {
+  const auto text = [&](double bound) {
+    return row.is_share() ? format_percent(bound) : format_number(bound);
+  };
+  const double low = row.accept.low;
+  const double high = row.accept.high;
+  const bool no_low = !(low > 0.0);
+  if (std::isinf(high)) return no_low ? "anything" : "at least " + text(low);
+  if (no_low) return "at most " + text(high);
+  return low == high ? text(low) : text(low) + " to " + text(high);
+}
+
+/// "`a` against `b`, frame_ms".
+std::string method_text(const PublishedRow& row) {
+  const std::string method = markdown_code(row.short_culler);
+  const std::string compared =
+      row.compares ? method + " against " + markdown_code(row.short_against) : method;
+  switch (row.metric) {
+    case PublishedRow::Metric::culled:
+      return compared + ", share of all triangles";
+    case PublishedRow::Metric::decision_share:
+      return compared + ", (update_us + cull_us) ÷ frame_ms";
+    case PublishedRow::Metric::cull_us:
+      return compared + ", cull_us";
+    case PublishedRow::Metric::named:
+      return compared + ", " + markdown_text(row.metric_name);
+    case PublishedRow::Metric::frame_ms:
+      break;
+  }
+  return compared + ", frame_ms";
+}
+
+std::string verdict_text(ClaimVerdict verdict) {
+  const std::string text = to_string(verdict);
+  const bool is_told = verdict == ClaimVerdict::confirmed || verdict == ClaimVerdict::not_confirmed;
+  return is_told ? "**" + text + "**" : text;
+}
+
+Fields row_fields(const PublishedRow& row, const OwnFigure& own) {
+  Fields fields;
+  fields.values["what"] = markdown_text(row.what);
+  fields.values["table"] = markdown_text(row.table);
+  fields.values["published"] =
+      row.published.empty() ? format_number(row.ratio()) + " (" + format_number(row.without_fps) +
+                                  " → " + format_number(row.with_fps) + " frames a second)"
+                            : markdown_text(row.published);
+  fields.values["verdict"] = verdict_text(verdict_of(row, own));
+  if (!row.cannot_be_told.empty()) {
+    fields.values["accept"] = fields.values["own"] = fields.values["method"] = "–";
+    fields.values["scene"] = markdown_text(row.cannot_be_told);
+    return fields;
+  }
+  fields.values["accept"] = accept_text(row);
+  fields.values["own"] = own_text(row, own);
+  fields.values["scene"] = markdown_text(place_of(row, own));
+  fields.values["method"] = method_text(row);
+  return fields;
+}
+
+using Counts = std::array<std::size_t, 4>;  // by ClaimVerdict
+
+void add_counts(const Counts& counts, const std::string& prefix, Fields& fields) {
+  const auto set = [&](const char* name, ClaimVerdict verdict) {
+    fields.values[prefix + name] = std::to_string(counts[static_cast<std::size_t>(verdict)]);
+  };
+  set("confirmed", ClaimVerdict::confirmed);
+  set("not_confirmed", ClaimVerdict::not_confirmed);
+  set("cannot_be_told", ClaimVerdict::cannot_be_told);
+  set("not_run", ClaimVerdict::not_run);
+}
+
+}  // namespace
+
+void add_claim_fields(const ReportInput& input, Fields& fields) {
+  Counts all{};
+  std::size_t claims = 0;
+  auto& sources = fields.lists["claim_sources"];
+  auto& unmeasured = fields.lists["unmeasured_sources"];
+  for (const PublishedFigures& figures : input.published) {
+    Counts counts{};
+    Fields entry;
+    bool any = false;
+    for (const PublishedRow& row : figures.rows) {
+      const OwnFigure own = own_figure(row, input.blocks);
+      any |= own.cell != nullptr;
+      ++counts[static_cast<std::size_t>(verdict_of(row, own))];
+      entry.lists["rows"].push_back(row_fields(row, own));
+    }
+    for (std::size_t i = 0; i < counts.size(); ++i) all[i] += counts[i];
+    claims += figures.rows.size();
+    entry.values["title"] = markdown_text(figures.title);
+    entry.values["source"] = markdown_text(figures.source);
+    entry.values["note"] = markdown_text(figures.note);
+    entry.values["count"] = std::to_string(figures.rows.size());
+    add_counts(counts, "", entry);
+    (any ? sources : unmeasured).push_back(std::move(entry));
+  }
+  fields.flag("has_claims", !sources.empty());
+  fields.flag("has_unmeasured_sources", !unmeasured.empty());
+  fields.values["claim_count"] = std::to_string(claims);
+  add_counts(all, "claims_", fields);
+}
+
+}  // namespace vislab
