@@ -42,10 +42,10 @@ constexpr const char* persistence_file = "persistence.json";
 
 /// The report's parts in their order; each is templates/NAME.md, and is left out where there is no
 /// such file.
-constexpr const char* parts[] = {
-    "front",    "introduction", "floor",   "depth",     "persistence", "families",
-    "cells",   "surfaces", "queries",      "scenes",  "chains",      "model_size",
-    "sweeps",  "claims",   "errata",       "methods", "metrics",   "measurement"};
+constexpr const char* parts[] = {"front",    "introduction", "floor",      "depth",   "persistence",
+                                 "families", "cells",        "surfaces",   "queries", "scenes",
+                                 "chains",   "model_size",   "sweeps",     "claims",  "errata",
+                                 "methods",  "metrics",      "measurement"};
 
 /// A folder for work in progress, gone with this object.
 class WorkFolder {
@@ -165,8 +165,7 @@ void write_words(const ReportInput& input, const QueryFindings& queries,
   }
   write_text(work / "report.md", text);
   const fs::path summary = folder / "summary.md";
-  write_text(work / "summary.md",
-             fill_template(read_template(summary), fields, summary.string()));
+  write_text(work / "summary.md", fill_template(read_template(summary), fields, summary.string()));
 }
 
 void make_page(const fs::path& templates, const fs::path& work) {
