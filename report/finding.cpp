@@ -18,7 +18,10 @@ const CellSummary* lesser(const CellSummary* a, const CellSummary* b, Value&& va
 double time_ratio(const CellSummary& cell) { return cell.against_none.value; }
 double over(const CellSummary& cell) { return cell.over; }
 
-bool is_oracle(const CellSummary& cell) { return cell.anchor && cell.canonical != "none"; }
+/// One that is told the truth itself (oracle.rays is told what other rays find).
+bool is_oracle(const CellSummary& cell) {
+  return cell.anchor && cell.canonical != "none" && cell.guarantee != Guarantee::approximate;
+}
 
 FindingKind kind_of(const Estimate& ratio, const Estimate& noise) {
   const double least = noise.measured() ? std::min(1.0, noise.low) : 1.0;

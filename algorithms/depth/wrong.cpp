@@ -98,6 +98,13 @@ constexpr std::array mistakes{
          "leaves out boxes about the eye, such as the ground, behind a wall before it",
          "niagara issue 17; MaskedOcclusionCulling issue 12"},
         buffer<make_near_plane_projected>},
+    DepthMistake{
+        {"euclidean_nearest", "A box has the depth of its point nearest to the eye",
+         "depth is measured along the view, and beside its middle another corner may lie before "
+         "that point",
+         "leaves out long boxes at the image's sides, more of them the longer they are",
+         "Godot issues 94210 and 106184, pull requests 97712 and 108347"},
+        buffer<make_euclidean_nearest>},
     DepthMistake{{"loose_bounds",
                   "What is asked is not the object's own box but a larger one (growth times as "
                   "large), as of a sphere around it",

@@ -92,6 +92,25 @@ class LooseBounds : public FullSize {
   }
 };
 
+/// Asks about the depth of the point that is nearest to the eye, which others may lie before.
+class EuclideanNearest : public AllDrawnFirst {
+ public:
+  using AllDrawnFirst::AllDrawnFirst;
+
+ protected:
+  BoxPlace place(const Aabb& box, BoxWindow& out) override {
+    const BoxPlace place = AllDrawnFirst::place(box, out);
+    const WindowTransform& window = raster().window();
+    if (place != BoxPlace::inside || !window.perspective()) return place;
+    const Pose& pose = window.camera().pose;
+    const glm::dvec3 nearest =
+        glm::clamp(pose.eye, glm::dvec3(box.min), glm::dvec3(box.max)) - pose.eye;
+    const double depth = -glm::dot(nearest, pose.back);
+    if (depth > 0.0) out.nearness = std::min(out.nearness, round_up(window.nearness(depth)));
+    return place;
+  }
+};
+
 /// Compares window depths in whole numbers, and takes equal ones for hidden.
 class Quantised : public AllDrawnFirst {
  public:
@@ -300,6 +319,10 @@ class StaleOccluders : public FullSize {
 std::unique_ptr<ICuller> make_near_plane_projected(CullerInfo info, const WrongSettings& settings) {
   return std::make_unique<NearPlaneProjected>(std::move(info), settings);
 }
+std::unique_ptr<ICuller> make_euclidean_nearest(CullerInfo info, const WrongSettings& settings) {
+  return std::make_unique<EuclideanNearest>(std::move(info), settings);
+}
+
 std::unique_ptr<ICuller> make_loose_bounds(CullerInfo info, const WrongSettings& settings) {
   return std::make_unique<LooseBounds>(std::move(info), settings);
 }

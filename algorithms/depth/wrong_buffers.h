@@ -22,6 +22,7 @@ std::unique_ptr<ICuller> make_update_backwards(CullerInfo info, const WrongSetti
 std::unique_ptr<ICuller> make_wrong_reduction(CullerInfo info, const WrongSettings& settings);
 // What is asked.
 std::unique_ptr<ICuller> make_near_plane_projected(CullerInfo info, const WrongSettings& settings);
+std::unique_ptr<ICuller> make_euclidean_nearest(CullerInfo info, const WrongSettings& settings);
 std::unique_ptr<ICuller> make_loose_bounds(CullerInfo info, const WrongSettings& settings);
 std::unique_ptr<ICuller> make_quantised(CullerInfo info, const WrongSettings& settings);
 // What is drawn.

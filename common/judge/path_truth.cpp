@@ -1,27 +1,37 @@
 #include "common/judge/path_truth.h"
 
+#include "common/judge/ray_probes.h"
+
 namespace vislab {
 
-void PathTruth::add(FrameTruth truth) {
-  Entry& entry = frames_.emplace_back();
-  entry.truth = std::move(truth);
+SeenParts seen_parts(const Scene& scene, std::span<const TriangleId> seen) {
+  SeenParts parts;
   ObjectId object = none_id;
-  for (const TriangleId id : entry.truth.visible()) {
-    if (object == none_id ||
-        id - scene_->first_triangle(object) >= scene_->triangle_count(object)) {
-      object = scene_->object_of(id);
-      entry.objects.push_back(object);
+  for (const TriangleId id : seen) {
+    if (object == none_id || id - scene.first_triangle(object) >= scene.triangle_count(object)) {
+      object = scene.object_of(id);
+      parts.objects.push_back(object);
     }
-    const std::uint32_t triangle = id - scene_->first_triangle(object);
-    if (!entry.triangles.empty()) {
-      TriangleRange& last = entry.triangles.back();
+    const std::uint32_t triangle = id - scene.first_triangle(object);
+    if (!parts.triangles.empty()) {
+      TriangleRange& last = parts.triangles.back();
       if (last.object == object && last.first + last.count == triangle) {
         ++last.count;
         continue;
       }
     }
-    entry.triangles.push_back({object, triangle, 1});
+    parts.triangles.push_back({object, triangle, 1});
   }
+  return parts;
+}
+
+void PathTruth::add(FrameTruth truth) {
+  SeenParts parts = seen_parts(*scene_, truth.visible());
+  frames_.push_back({std::move(truth), std::move(parts)});
+}
+
+std::unique_ptr<RayProbe> PathTruth::probe(const RaySampling& sampling) const {
+  return make_ray_probe(*scene_, sampling);
 }
 
 PathTruth trace_path(const Path& path, const Viewport& viewport, const TruthSettings& settings,

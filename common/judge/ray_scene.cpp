@@ -21,6 +21,15 @@ const char* instruction_set() {
       "this processor has no AVX: truth is traced in packets of eight rays, which need it");
 }
 
+void require_instruction_set(const std::string& name) {
+  const bool has = name == "sse2" || (name == "avx" && __builtin_cpu_supports("avx")) ||
+                   (name == "avx2" && __builtin_cpu_supports("avx2"));
+  if (!has) {
+    throw InputError("rays, instruction_set: this processor cannot run '" + name +
+                     "'; sse2, avx and avx2 are known");
+  }
+}
+
 void report_error(void* /*user*/, RTCError code, const char* text) {
   throw std::runtime_error("Embree error " + std::to_string(static_cast<int>(code)) + ": " +
                            (text != nullptr ? text : ""));
@@ -42,8 +51,14 @@ std::string ray_engine() {
   return std::string("embree ") + RTC_VERSION_STRING + " " + instruction_set() + " robust";
 }
 
-RayScene::RayScene(const Scene& scene)
-    : scene_(&scene), instanced_(scene.triangle_count() > flat_triangle_limit) {
+RayScene::RayScene(const Scene& scene, RayEngine engine)
+    : scene_(&scene),
+      engine_(std::move(engine)),
+      scene_flags_((engine_.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE) |
+                   RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION),
+      instanced_(scene.triangle_count() > flat_triangle_limit) {
+  if (engine_.instruction_set.empty()) engine_.instruction_set = instruction_set();
+  require_instruction_set(engine_.instruction_set);
   const std::size_t count = scene.object_count();
   first_triangle_.resize(count);
   for (ObjectId object = 0; object < count; ++object) {
@@ -114,7 +129,7 @@ std::array<glm::dvec3, 3> RayScene::triangle(TriangleId id) const {
 }
 
 void RayScene::build() {
-  device_ = rtcNewDevice((std::string("isa=") + instruction_set()).c_str());
+  device_ = rtcNewDevice(("isa=" + engine_.instruction_set).c_str());
   if (device_ == nullptr) {
     throw std::runtime_error("Embree gives no device, error " +
                              std::to_string(static_cast<int>(rtcGetDeviceError(nullptr))));
@@ -135,7 +150,7 @@ void RayScene::build_instances() {
   tbb::task_arena one_thread(1);
   for (const Mesh& mesh : scene_->meshes) {
     RTCScene mesh_scene = rtcNewScene(device_);
-    rtcSetSceneFlags(mesh_scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+    rtcSetSceneFlags(mesh_scene, static_cast<RTCSceneFlags>(scene_flags_));
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     std::memcpy(vertex_buffer(geometry, mesh.positions.size()), mesh.positions.data(),
                 mesh.positions.size() * sizeof(glm::vec3));
@@ -148,7 +163,7 @@ void RayScene::build_instances() {
     mesh_scenes_.push_back(mesh_scene);
   }
   top_ = rtcNewScene(device_);
-  rtcSetSceneFlags(top_, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+  rtcSetSceneFlags(top_, static_cast<RTCSceneFlags>(scene_flags_));
   for (ObjectId object = 0; object < geometries_.size(); ++object) {
     RTCGeometry instance = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(instance, mesh_scenes_[scene_->objects[object].mesh]);
@@ -217,8 +232,7 @@ void RayScene::build_merged() {
     if (shown_[object] != 0) rtcEnableGeometry(geometries_[object]);
   }
   // A dynamic scene keeps a tree for each geometry, so that a moved object rebuilds its own only.
-  const int flags = RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION |
-                    (any_apart ? RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_NONE);
+  const int flags = scene_flags_ | (any_apart ? RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_NONE);
   rtcSetSceneFlags(top_, static_cast<RTCSceneFlags>(flags));
   commit();
 }

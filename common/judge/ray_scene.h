@@ -17,7 +17,13 @@ namespace vislab {
 /// instruction sets (Embree issue 423). Throws InputError on a processor without AVX.
 std::string ray_engine();
 
-/// An Embree scene of the objects that are shown, robust, both sides of every triangle.
+/// How a RayScene traces. Truth has the defaults.
+struct RayEngine {
+  bool robust = true;
+  std::string instruction_set;  // "sse2", "avx" or "avx2"; empty: ray_engine()'s
+};
+
+/// An Embree scene of the objects that are shown, both sides of every triangle.
 ///
 /// Vertices are float world positions, computed in double and rounded after Scene::origin() was
 /// subtracted. Objects that never change are merged into one geometry; an object that moves or is
@@ -31,8 +37,9 @@ class RayScene {
  public:
   static constexpr std::size_t flat_triangle_limit = 8'000'000;
 
-  /// Does nothing yet; the scene outlives this.
-  explicit RayScene(const Scene& scene);
+  /// Does nothing yet; the scene outlives this. Throws InputError for an instruction set that the
+  /// processor does not have.
+  explicit RayScene(const Scene& scene, RayEngine engine = {});
   ~RayScene();
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
@@ -63,6 +70,8 @@ class RayScene {
   void commit();
 
   const Scene* scene_;
+  RayEngine engine_;
+  int scene_flags_;  // of every Embree scene
   RTCDevice device_ = nullptr;
   RTCScene top_ = nullptr;
   bool instanced_ = false;

@@ -134,6 +134,20 @@ TEST(DepthWrong, CornersBehindTheEyeAreNotWhereTheyAreProjected) {
                 finished(std::move(scene), {looking({0.0, 0.5, 1.0}, {0.0, 0.0, -10.0})}));
 }
 
+TEST(DepthWrong, PointsNearestToTheEyeAreNotThoseOfLeastDepth) {
+  BoxFieldParameters parameters;
+  parameters.count = 400;
+  parameters.extent_m = 25.0;
+  parameters.min_half_size_m = 0.8;
+  parameters.max_half_size_m = 1.6;
+  parameters.clear_radius_m = 2.0;
+  parameters.elongation = 4.5;
+  expect_losses("euclidean_nearest",
+                finished(make_box_field(parameters), {looking({0.0, 0.0, 0.0}, {1.0, 0.0, 0.7}),
+                                                      looking({0.0, 0.0, 0.0}, {-1.0, 0.0, 0.8}),
+                                                      looking({0.0, 0.0, 0.0}, {0.7, 0.0, -1.0})}));
+}
+
 TEST(DepthWrong, LooseBoundsFindLessHidden) {
   expect_waste("loose_bounds,growth=2", "depth.wrong[error=loose_bounds,growth=1]", city());
 }

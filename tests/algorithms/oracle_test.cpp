@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "common/judge/path_truth.h"
 #include "common/scene/error.h"
 #include "experiments/contract/small_scenes.h"
 #include "tests/algorithms/run_culler.h"
@@ -62,7 +63,33 @@ TEST_F(Oracle, CutsOfferedRangesToTheVisibleTriangles) {
             (std::vector<TriangleRange>{{3, 11, 1}, {1, 5, 2}, {1, 1, 1}}));
 }
 
+TEST(OracleRays, KeepsWhatItsOwnRaysFindAndCountsThem) {
+  Scene scene;
+  scene.meshes = {cube_mesh()};
+  for (int i = 0; i < 5; ++i) scene.objects.push_back({0, placed({3.0 * i, 0.0, 0.0}), none_id});
+  scene.finish();
+  const PathTruth truth(scene);
+  BuildContext context;
+  context.truth = &truth;
+  const Camera camera = camera_at({0.0, 0.0, 20.0}, {0.0, 0.0, 0.0});
+  CullerRun few("oracle.rays[aim=lattice,every_px=64,offset_x_px=32.5,offset_y_px=32.3]", scene,
+                context);
+  few.update(camera, {});
+  EXPECT_EQ(few.objects(camera), (std::vector<ObjectId>{0})) << "one ray, straight on";
+  EXPECT_EQ(few.counter("rays"), 1U);
+  EXPECT_EQ(few.counter("unseen_ppm"), 1'000'000U) << "all that was seen was seen once";
+  CullerRun many("oracle.rays", scene, context);
+  many.update(camera, {});
+  EXPECT_EQ(many.objects(camera), (std::vector<ObjectId>{0, 1, 2, 3}));
+  CullerRun triangles("oracle.rays[level=triangle]", scene, context);
+  triangles.update(camera, {});
+  EXPECT_EQ(triangles.emitted(camera).front().count, 2U) << "only the front of the first cube";
+}
+
 TEST_F(Oracle, RefusesToBuildWithoutTruth) {
+  EXPECT_THROW(CullerRun("oracle.rays", scene_), InputError);
+  EXPECT_THROW(CullerRun("oracle.rays", scene_, context_), InputError)
+      << "a truth that is written down casts no rays";
   EXPECT_THROW(CullerRun("oracle", scene_), InputError);
   EXPECT_THROW(CullerRun("oracle[level=triangle]", scene_), InputError);
 }

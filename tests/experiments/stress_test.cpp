@@ -66,6 +66,21 @@ TEST(Stress, TheAtlasTellsWhereMethodsBreakAndWhetherThatWasExpected) {
   EXPECT_GT(wrong.at("breaks_at"), 0.5);
   EXPECT_GT(wrong.at("worst"), 0.0);
   EXPECT_EQ(wrong.at("guarantee"), "erroneous");
+
+  const std::string text = run_vislab({"atlas", "--results", results}).out;
+  EXPECT_NE(text.find("false_px > 0"), std::string::npos) << text;
+  EXPECT_NE(text.find("edge = "), std::string::npos) << "where it breaks: " << text;
+  EXPECT_NE(text.find("promises broken: 0"), std::string::npos) << text;
+}
+
+TEST(Stress, TheAtlasSaysWhichOfItsRowsHaveNoSweepAndWhy) {
+  const TemporaryFolder folder;
+  const std::string results = folder.path() / "results";
+  ASSERT_EQ(run_vislab({"run", "box_in_frustum", "--results", results, "--quiet"}).exit_code, 0);
+  const std::string text = run_vislab({"atlas", "--results", results}).out;
+  EXPECT_NE(text.find("77 of 79 entries of the failure atlas have a sweep; without: F13 (scenes"),
+            std::string::npos)
+      << text;
 }
 
 TEST(Stress, TheAtlasKnowsSweepsOfOnesOwnAndOnlyAsTheyAreNow) {
