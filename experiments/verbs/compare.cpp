@@ -266,6 +266,7 @@ int compare(const Lab& lab, const std::string& a, const std::string& b,
 
   Table table({"scene",
                "path",
+               "resolution",
                "device",
                "blocks",
                "a",
@@ -321,6 +322,7 @@ int compare(const Lab& lab, const std::string& a, const std::string& b,
     };
     table.add({block.scene,
                block.path,
+               std::to_string(block.viewport.width) + "x" + std::to_string(block.viewport.height),
                block.device,
                std::uint64_t{1},
                in_a->culler,
@@ -364,6 +366,7 @@ int compare(const Lab& lab, const std::string& a, const std::string& b,
       return device == "none" ? TableValue() : count(value);
     };
     table.add({{},
+               {},
                {},
                device,
                std::uint64_t{overall.blocks},
