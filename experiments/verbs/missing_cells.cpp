@@ -67,9 +67,10 @@ PlannedGaps find_planned_gaps(const std::vector<Matrix>& matrices,
       }
     }
     if (2 * present <= planned) continue;
-    const std::string reason = "no cell of it is in the results though the matrix " + matrix.name +
-                               " plans it; 'vislab run " + matrix.name +
-                               "' measures what is missing";
+    const std::string reason = "the matrix " + matrix.name +
+                               " plans it, and no cell of it is in the results that was measured "
+                               "with the sources as they are; 'vislab run " +
+                               matrix.name + "' measures it";
     for (const Block& block : matrix.blocks) {
       const BlockName name = name_of(block);
       const auto found = stored.find(name);
