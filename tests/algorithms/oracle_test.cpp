@@ -80,7 +80,7 @@ TEST(OracleRays, KeepsWhatItsOwnRaysFindAndCountsThem) {
   EXPECT_EQ(few.counter("unseen_ppm"), 1'000'000U) << "all that was seen was seen once";
   CullerRun many("oracle.rays", scene, context);
   many.update(camera, {});
-  EXPECT_EQ(many.objects(camera), (std::vector<ObjectId>{0, 1, 2, 3}));
+  EXPECT_EQ(many.objects(camera), (std::vector<ObjectId>{0, 1, 2, 3, 4}));
   CullerRun triangles("oracle.rays[level=triangle]", scene, context);
   triangles.update(camera, {});
   EXPECT_EQ(triangles.emitted(camera).front().count, 2U) << "only the front of the first cube";
