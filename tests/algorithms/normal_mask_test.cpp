@@ -90,7 +90,7 @@ TEST(NormalMask, FindsTheSharesThatWerePredicted) {
     const Frame frame{0, field.camera, {64, 64}, state.view(), 0.0};
     const std::vector<test::Facing> facings = test::exact_facings(field.scene, frame);
     for (std::size_t i = 0; i < sectors.size(); ++i) {
-      CullerRun run("backface.normal_mask[sectors=" + std::to_string(sectors[i]) + "]",
+      CullerRun run("backface.normal_mask[n=16,sectors=" + std::to_string(sectors[i]) + "]",
                     field.scene);
       const FacingCounts counts =
           test::count_facings(field.scene, frame, facings, run.emitted(field.camera));
@@ -174,7 +174,7 @@ TEST(NormalMask, AnswersTheSameForPartsOfAMesh) {
   const Scene scene = one_object(sphere_mesh(20));
   const Camera camera = camera_at({0.4, 0.7, 2.2}, {0.3, 0.0, 0.0});
   const auto left_out = [&](const std::vector<TriangleRange>& offered) {
-    CullerRun run("backface.normal_mask[sectors=16]", scene);
+    CullerRun run("backface.normal_mask[n=16,sectors=16]", scene);
     const std::span<const TriangleRange> span(offered);
     std::set<std::uint32_t> out;
     for (const TriangleRange& range : offered) {

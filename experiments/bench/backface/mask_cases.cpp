@@ -159,7 +159,7 @@ Measurement share_found(double fov_deg, int sectors) {
   Registry registry;
   register_all_cullers(registry);
   const auto culler =
-      registry.make("backface.normal_mask[sectors=" + std::to_string(sectors) + "]");
+      registry.make("backface.normal_mask[n=16,sectors=" + std::to_string(sectors) + "]");
   culler->build(field.scene, {});
   RecordingSink sink;
   sink.start(field.scene, frame);
