@@ -28,7 +28,8 @@ constexpr int outside_height = 760;
 constexpr int eye_width = 420;
 constexpr double legend_row = 62.0;
 constexpr int supersampling = 2;
-constexpr double surroundings = 0.5;     // shown around what is seen, of its diagonal
+constexpr double surroundings = 0.1;     // shown around what is seen, of its diagonal
+constexpr double largest_shown = 0.6;    // of all; larger objects do not count for what is shown
 constexpr double headroom_m = 0.3;       // above the eye, where a scene with cells is cut
 constexpr double longest_frustum = 0.6;  // of what is shown, along the view
 
@@ -55,25 +56,35 @@ struct Region {
   }
 };
 
+/// Ground that reaches to the border of everything would make all else small.
+bool is_ground(const Aabb& box, const Region& all) {
+  return glm::length(glm::dvec3(box.max) - glm::dvec3(box.min)) >
+         largest_shown * glm::length(all.high - all.low);
+}
+
 /// What is in sight and some of what lies around it.
 Region region_of(const KindsPictureInput& input) {
   const Scene& scene = *input.scene;
+  const ObjectsView& objects = input.frame->objects;
   Region all;
+  for (const ObjectId object : objects.shown) {
+    all.extend(glm::dvec3(objects.bounds[object].min));
+    all.extend(glm::dvec3(objects.bounds[object].max));
+  }
   Region seen;
-  for (const ObjectId object : input.frame->objects.shown) {
-    all.extend(glm::dvec3(input.frame->objects.bounds[object].min));
-    all.extend(glm::dvec3(input.frame->objects.bounds[object].max));
+  for (const ObjectId object : objects.shown) {
+    if (is_ground(objects.bounds[object], all)) continue;
     const Mesh& mesh = scene.mesh_of(object);
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
       const CullingKind kind = input.kinds[scene.first_triangle(object) + i];
       if (kind != CullingKind::drawn && kind != CullingKind::detail) continue;
-      for (const glm::dvec3& corner :
-           world_triangle(mesh, input.frame->objects.transforms[object], i)) {
+      for (const glm::dvec3& corner : world_triangle(mesh, objects.transforms[object], i)) {
         seen.extend(corner);
       }
     }
   }
   const glm::dvec3& eye = input.frame->camera.pose.eye;
+  if (glm::any(glm::greaterThan(seen.low, seen.high))) seen = all;
   all.extend(eye);
   seen.extend(eye);
   const double around = surroundings * glm::length(seen.high - seen.low);

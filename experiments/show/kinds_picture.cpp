@@ -15,8 +15,8 @@ namespace {
 constexpr const char* portal_method = "portal.polygon";
 constexpr const char* detail_method = "detail.screen_size";
 constexpr double least_threshold_px = 4.0;
-constexpr double largest_detail = 0.01;  // of the image
-constexpr std::size_t frames_looked_at = 12;
+constexpr double largest_detail = 0.05;  // of the image
+constexpr std::size_t frames_looked_at = 24;
 
 bool outside_a_plane(const Frustum& frustum, const std::array<glm::dvec3, 3>& corners) {
   return std::ranges::any_of(frustum.span(), [&](const Plane& plane) {

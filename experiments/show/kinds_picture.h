@@ -22,7 +22,7 @@ struct FrameKinds {
 /// Says of each triangle which kind leaves it out: the first of these that does. It lies outside a
 /// plane of the frustum; the walk through cells and portals does not reach it; it faces away, on a
 /// solid mesh; truth does not see it; or its object is no larger in the image than the least
-/// threshold, of 4, 16, 64 … pixels up to a hundredth of the image, at which anything visible is.
+/// threshold, of 4, 16, 64 … pixels up to a twentieth of the image, at which anything visible is.
 class KindFinder {
  public:
   /// Builds the cullers that it asks. Scene and registry outlive it.
