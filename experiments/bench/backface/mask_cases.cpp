@@ -19,14 +19,14 @@ namespace {
 using namespace backface_culling;
 
 constexpr std::uint32_t copies = 16;
-constexpr int default_n = 16;
-constexpr int default_sectors = 8;
+constexpr int source_n = 16;
+constexpr int source_sectors = 8;
 
 /// 16 times the 1,002,252 triangles of the sphere with high bumps, seen by one of its world's eyes,
 /// and what is known of them: their classes, their planes, and which are back faces.
 class ManyTriangles {
  public:
-  ManyTriangles() : masks_(DirectionCube(default_n), default_sectors), marker_(masks_) {
+  ManyTriangles() : masks_(DirectionCube(source_n), source_sectors), marker_(masks_) {
     const auto world = FacingWorld::of("high");
     constexpr std::size_t eye = 20;
     Mesh mesh = world->mesh();
@@ -47,7 +47,7 @@ class ManyTriangles {
     masks_.start(camera_, 0);
     masks_.select(glm::dmat3(1.0));
     const auto first = static_cast<std::uint8_t>(SectorLines::lines_beyond);
-    const auto last = static_cast<std::uint8_t>(first + default_sectors);
+    const auto last = static_cast<std::uint8_t>(first + source_sectors);
     const std::uint16_t number = masks_.number_of({first, last, first, last});
     view_mask_ = masks_.masks()[number];
   }
