@@ -171,6 +171,7 @@ const CellSummary* named_right(const BlockSummary& block, const CellSummary& cel
   std::size_t most = 0;
   for (const CellSummary& other : block.cells) {
     if (!other.judged || other.guarantee == Guarantee::erroneous) continue;
+    if (other.canonical == cell.canonical) continue;  // not declared erroneous, but done as printed
     const std::vector<CullerSpec>& chain = chains.of(other.canonical);
     if (at == wrong_chain.end() || !stands_for(chain, wrong_chain, *at, wanted)) continue;
     const auto stage = static_cast<std::size_t>(at - wrong_chain.begin());
