@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "common/judge/image_judge.h"
+#include "common/judge/region_truth.h"
 #include "common/render/osmesa_device.h"
 #include "common/scene/error.h"
 #include "experiments/contract/contract_sink.h"
@@ -90,6 +91,11 @@ class Subject {
       all = united(all, kept);
     }
     return all;
+  }
+
+  /// The set of a cell; none if the culler has none.
+  std::optional<std::vector<ObjectId>> set_of(CellId cell) {
+    return region_set(*culler_, cell, scenario_->scene());
   }
 
   /// Objects whose backs the device left out on the culler's behalf, of the last ask.
@@ -223,6 +229,7 @@ class Walks {
     there_and_again({objects});
     there_and_again({even_objects, odd_objects});
     if (subject_.info().granularity == Granularity::triangle) there_and_again({ranges});
+    sets_of_cells();
   }
 
  private:
@@ -311,6 +318,42 @@ class Walks {
       compare(i, expected[i], asked(subject_, i, {OfferKind::everything}), "after other frames");
       compare(i, expected[i], asked(subject_, i, {OfferKind::everything}), "asked twice");
     }
+  }
+
+  /// Of methods that have a set for each cell: the same when it is asked again and with two
+  /// threads, and it holds what rays from all over the cell hit.
+  void sets_of_cells() {
+    const Scene& scene = scenario_->scene();
+    if (scene.cells.empty()) return;
+    subject_.reset();
+    other_.reset();
+    if (!subject_.set_of(0)) return;
+    std::vector<std::vector<ObjectId>> sets;
+    for (CellId cell = 0; cell < scene.cells.size(); ++cell) {
+      const auto set = subject_.set_of(cell);
+      if (set != subject_.set_of(cell) || set != other_.set_of(cell)) {
+        findings_->report(Findings::repeats, where_cell(cell),
+                          "its set is another when it is asked again, or with two threads");
+      }
+      sets.push_back(set.value_or(std::vector<ObjectId>()));
+    }
+    const auto none_such = static_cast<CellId>(scene.cells.size());
+    if (subject_.set_of(none_such)) {
+      findings_->report(Findings::emission, where_cell(none_such),
+                        "there is no such cell, but it gives a set for it");
+    }
+    if (subject_.info().guarantee != Guarantee::conservative) return;
+    RegionJudge judge(scene, {});
+    const RegionVerdict verdict =
+        judge.judge(judge.trace(reachable_cells(scene)), [&](CellId cell) { return sets[cell]; });
+    if (verdict.misses == 0) return;
+    findings_->report(Findings::guarantee, where_cell(verdict.witnesses.front().cell),
+                      std::to_string(verdict.misses) + " of " + std::to_string(verdict.rays) +
+                          " rays from all over the cells hit what their sets lack");
+  }
+
+  std::string where_cell(CellId cell) const {
+    return "scene '" + scenario_->name() + "', cell " + std::to_string(cell);
   }
 
   Scenario* scenario_;

@@ -27,6 +27,7 @@ struct ContractResult {
 ///   runs of objects, ranges of triangles (if that is its granularity) or batches;
 /// - its answers come again as its repeatability declares, with one thread and with two;
 /// - its guarantee holds, by ray casts (conservative) or on the image (image_exact);
+/// - its sets of cells, if it has any, come again and hold what rays from all over the cells hit;
 /// - it allocates nothing when a path is walked a second time.
 /// `witness`, if it is not null, becomes the first wrong pixel: of the answer that breaks the
 /// guarantee, or, of methods that promise nothing (approximate, erroneous), of the first answer

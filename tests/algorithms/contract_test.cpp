@@ -267,6 +267,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Breach{Misdeed::depends_on_threads, "come again", "two threads"},
                     Breach{Misdeed::allocates, "allocates", "allocations"},
                     Breach{Misdeed::overwrites_emission, "emits only", "twice"},
+                    Breach{Misdeed::has_poor_sets, "guarantee", "hit what their sets lack"},
                     Breach{Misdeed::needs_device_silently, "needs", "more than it declares"}),
     [](const testing::TestParamInfo<Breach>& param) { return std::to_string(param.index); });
 

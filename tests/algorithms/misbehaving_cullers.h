@@ -17,12 +17,16 @@ enum class Misdeed {
   depends_on_threads,    // with two threads it leaves everything out
   allocates,             // in each call of cull()
   overwrites_emission,   // changes the memory behind a span that it emitted
+  has_poor_sets,         // of cells: empty ones
   needs_device_silently  // refuses to build without a device, but does not declare it
 };
 
 class MisbehavingCuller : public ICuller {
  public:
-  explicit MisbehavingCuller(Misdeed misdeed) : misdeed_(misdeed) {}
+  explicit MisbehavingCuller(Misdeed misdeed) : misdeed_(misdeed) {
+    // It keeps all that it is offered.
+    if (misdeed == Misdeed::has_poor_sets) info_.guarantee = Guarantee::conservative;
+  }
 
   static CullerInfo describe() {
     CullerInfo info;
@@ -39,11 +43,15 @@ class MisbehavingCuller : public ICuller {
   const CullerInfo& info() const override { return info_; }
   void build(const Scene& scene, const BuildContext& context) override;
   void cull(const Frame& frame, const Candidates& candidates, DrawSink& out) override;
+  bool region(CellId cell, DrawSink&) override {
+    return misdeed_ == Misdeed::has_poor_sets && cell < cell_count_;
+  }
 
  private:
   CullerInfo info_ = describe();
   Misdeed misdeed_;
   int threads_ = 1;
+  std::size_t cell_count_ = 0;
   std::uint64_t calls_ = 0;
   std::vector<ObjectId> kept_;
 };
@@ -53,6 +61,7 @@ inline void MisbehavingCuller::build(const Scene& scene, const BuildContext& con
     throw InputError("misbehaving: it wants a device");
   }
   threads_ = context.threads;
+  cell_count_ = scene.cells.size();
   kept_.reserve(scene.object_count() + 1);
 }
 
@@ -87,6 +96,7 @@ inline void MisbehavingCuller::cull(const Frame& frame, const Candidates& candid
       out.objects(kept_);
       for (ObjectId& object : kept_) object = kept_.front();
       return;
+    case Misdeed::has_poor_sets:
     case Misdeed::needs_device_silently:
       break;
   }
