@@ -158,7 +158,7 @@ TEST(Guide, SaysNothingOfScenesInWhichNothingIsLeftOut) {
   EXPECT_EQ(make_guides(blocks).size(), 1U);
 }
 
-TEST(Published, OwnRatiosAreThoseOfTheRowsSceneAndMethods) {
+TEST(PublishedRow, OwnRatiosAreThoseOfTheRowsSceneAndMethods) {
   const std::vector<BlockSummary> blocks{
       block_with("s", {method("frustum.a", 9.0, 5.0), method("frustum.b", 9.0, 2.0)})};
   std::vector<BlockSummary> with_none = blocks;
@@ -184,7 +184,7 @@ TEST(Published, OwnRatiosAreThoseOfTheRowsSceneAndMethods) {
   EXPECT_EQ(own_figure(row, with_none).cell, nullptr);
 }
 
-TEST(Published, SharesAreOfAllTrianglesAndOfTheFrame) {
+TEST(PublishedRow, SharesAreOfAllTrianglesAndOfTheFrame) {
   CellSummary a = method("backface.a", 399.0, 5.0);
   a.submitted_triangles = 60.0;
   CellSummary none = method("none", 0.0, 10.0);
@@ -192,6 +192,7 @@ TEST(Published, SharesAreOfAllTrianglesAndOfTheFrame) {
   none.against_none = {1.0, 1.0, 1.0};
   const std::vector<BlockSummary> blocks{block_with("s", {none, a})};
   PublishedRow row{"w", "t", 0.0, 0.0, "s", "way", "backface.a", "none"};
+  row.compares = false;
   row.metric = PublishedRow::Metric::culled;
   EXPECT_DOUBLE_EQ(own_figure(row, blocks).ratio.value, 0.4);
   row.metric = PublishedRow::Metric::decision_share;
@@ -200,7 +201,7 @@ TEST(Published, SharesAreOfAllTrianglesAndOfTheFrame) {
   EXPECT_EQ(own_figure(row, blocks).cell, nullptr);
 }
 
-TEST(Published, TheBlockWithTheMostFramesStandsForARowInAnyOrder) {
+TEST(PublishedRow, TheBlockWithTheMostFramesStandsForARowInAnyOrder) {
   BlockSummary brief = block_with("s", {method("frustum.a", 9.0, 5.0), method("none", 1.0, 10.0)});
   brief.frames = 12;
   BlockSummary full = brief;
