@@ -23,21 +23,13 @@ using test::cube_mesh;
 using test::frame_of;
 using test::object_at;
 using test::square_mesh;
+using test::wall_and_cubes;
 
 #ifdef __SANITIZE_ADDRESS__
 constexpr int trials = 4;
 #else
 constexpr int trials = 40;
 #endif
-
-Scene wall_and_cubes() {
-  Scene scene;
-  scene.meshes = {square_mesh(4), cube_mesh()};
-  scene.objects = {object_at(0, {0.0, 0.0, -4.0}, 2.0), object_at(1, {0.3, 0.2, -3.0}, 0.5),
-                   object_at(1, {0.0, 0.0, -6.0}, 0.5), object_at(1, {2.0, 0.0, -6.0}, 0.7)};
-  scene.finish();
-  return scene;
-}
 
 /// Cubes and squares, some turned, mirrored or flat, that hide and cut each other.
 Scene random_scene(Random& random) {

@@ -60,4 +60,14 @@ inline Frame frame_of(const SceneState& state, const Viewport& viewport) {
   return frame;
 }
 
+/// A wall of squares at z = -4, a cube before it and one behind it.
+inline Scene wall_and_cubes() {
+  Scene scene;
+  scene.meshes = {square_mesh(4), cube_mesh()};
+  scene.objects = {object_at(0, {0.0, 0.0, -4.0}, 2.0), object_at(1, {0.3, 0.2, -3.0}, 0.5),
+                   object_at(1, {0.0, 0.0, -6.0}, 0.5), object_at(1, {2.0, 0.0, -6.0}, 0.7)};
+  scene.finish();
+  return scene;
+}
+
 }  // namespace vislab::test
