@@ -1,5 +1,5 @@
 # Script: writes a C++ file with one hash for the sources of every culler family and one for the judge.
-#   cmake -D SOURCE_DIR=… -D FAMILIES=a:folder_a,b:folder_b+folder_c -D TRUTH_FAMILIES=b -D OUTPUT=file -P WriteSourceHashes.cmake
+#   cmake -D SOURCE_DIR=… -D FAMILIES=a:algorithms/a,b:algorithms/b+common/c -D TRUTH_FAMILIES=b -D OUTPUT=file -P WriteSourceHashes.cmake
 # A family's answers depend on its own folders and on the layers below them, those of TRUTH_FAMILIES on the
 # judge too; the judge's on itself and the same layers. A mended family gets another hash, the others keep
 # theirs.
@@ -30,9 +30,7 @@ foreach(entry IN LISTS families)
   set(family "${CMAKE_MATCH_1}")
   set(folders ${layers})
   string(REPLACE "+" ";" own_folders "${CMAKE_MATCH_2}")
-  foreach(folder IN LISTS own_folders)
-    list(APPEND folders "algorithms/${folder}")
-  endforeach()
+  list(APPEND folders ${own_folders})
   if(family IN_LIST truth_families)
     list(APPEND folders common/judge)
   endif()

@@ -19,7 +19,8 @@ class SourceHashes : public ::testing::Test {
   SourceHashes() {
     for (const char* file : {"common/geometry/plane.h", "common/judge/metrics.cpp",
                              "algorithms/frustum/flat.cpp", "algorithms/backface/polygon.cpp",
-                             "algorithms/oracle/oracle.cpp", "algorithms/peers/bullet.cpp"}) {
+                             "algorithms/oracle/oracle.cpp", "algorithms/peers/bullet.cpp",
+                             "algorithms/depth/hzb.cpp", "common/raster/depth_raster.cpp"}) {
       fs::create_directories((folder_.path() / file).parent_path());
       folder_.write(file, "int x;\n");
     }
@@ -30,7 +31,8 @@ class SourceHashes : public ::testing::Test {
     const fs::path output = folder_.path() / "hashes.cpp";
     const std::string command =
         std::string(VISLAB_CMAKE) + " -D SOURCE_DIR=" + folder_.path().string() +
-        " -D FAMILIES=frustum:frustum,backface:backface,oracle:oracle,peer:peers -D "
+        " -D FAMILIES=frustum:algorithms/frustum,backface:algorithms/backface,oracle:algorithms/"
+        "oracle,peer:algorithms/peers,depth:algorithms/depth+common/raster -D "
         "TRUTH_FAMILIES=oracle -D OUTPUT=" +
         output.string() + " -P " VISLAB_SOURCE_DIR "/cmake/WriteSourceHashes.cmake";
     EXPECT_EQ(std::system(command.c_str()), 0);
@@ -41,7 +43,7 @@ class SourceHashes : public ::testing::Test {
       found[(*it)[1].matched ? (*it)[1].str() : "judge"] =
           (*it)[2].matched ? (*it)[2].str() : (*it)[3].str();
     }
-    EXPECT_EQ(found.size(), 5U);
+    EXPECT_EQ(found.size(), 6U);
     return found;
   }
 
@@ -61,6 +63,15 @@ TEST_F(SourceHashes, AFamilyIsKnownByItsFolder) {
   const auto before = hashes();
   folder_.write("algorithms/peers/bullet.cpp", "int y;\n");
   EXPECT_NE(hashes().at("peer"), before.at("peer"));
+}
+
+TEST_F(SourceHashes, AMendedRasteriserChangesTheFamiliesThatUseIt) {
+  const auto before = hashes();
+  folder_.write("common/raster/depth_raster.cpp", "int y;\n");
+  const auto after = hashes();
+  EXPECT_NE(after.at("depth"), before.at("depth"));
+  EXPECT_EQ(after.at("frustum"), before.at("frustum"));
+  EXPECT_EQ(after.at("judge"), before.at("judge"));
 }
 
 TEST_F(SourceHashes, ALowerLayerChangesEveryFamilyAndTheJudge) {
