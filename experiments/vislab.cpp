@@ -4,7 +4,10 @@
 #include <exception>
 #include <functional>
 #include <iostream>
+#include <limits>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "algorithms/all_cullers.h"
 #include "common/scene/error.h"
@@ -33,7 +36,17 @@ class CommandLine {
  public:
   CommandLine() {
     run_.results = "out/results";
-    app_.require_subcommand(1);
+    app_.name("vislab");
+    app_.require_subcommand(0, 1);
+    app_.get_formatter()->label("SUBCOMMAND", "VERB");
+    app_.footer(
+        "Exit code: 0 done, 1 something that was checked failed, 2 the call or an input file is "
+        "wrong.");
+    app_.failure_message([](const CLI::App* app, const CLI::Error& error) {
+      std::string called = app->get_name();
+      for (const CLI::App* verb : app->get_subcommands()) called += " " + verb->get_name();
+      return "vislab: " + std::string(error.what()) + "; see '" + called + " --help'\n";
+    });
     add_list();
     add_describe();
     add_plan();
@@ -47,10 +60,12 @@ class CommandLine {
     add_check();
     add_new_culler();
     add_baseline();
+    add_help();
   }
 
   /// The exit code.
   int run(int argc, char** argv) {
+    if (argc > 1 && argv[1][0] != '-') require_verb(argv[1]);
     try {
       app_.parse(argc, argv);
     } catch (const CLI::Success& success) {
@@ -59,12 +74,21 @@ class CommandLine {
       app_.exit(error, std::cout, std::cerr);
       return 2;
     }
+    if (!action_) throw InputError("a verb is missing; 'vislab help' names them all");
     return action_();
   }
 
  private:
+  CLI::App* require_verb(const std::string& name) {
+    std::vector<std::string> known;
+    for (CLI::App* const sub : app_.get_subcommands(nullptr)) {
+      if (sub->get_name() == name) return sub;
+      known.push_back(sub->get_name());
+    }
+    throw unknown_name("verb", name, known);
+  }
   CLI::App* verb(const std::string& name, const std::string& meaning, std::function<int()> action) {
-    CLI::App* const sub = app_.add_subcommand(name, meaning);
+    CLI::App* const sub = app_.add_subcommand(name, meaning)->group("Verbs");
     sub->callback([this, action = std::move(action)] { action_ = action; });
     return sub;
   }
@@ -85,7 +109,9 @@ class CommandLine {
     CLI::App* const sub =
         verb("describe", "a culler, a scene, a matrix, a sweep, a metric or a device in full",
              [this] { return describe(lab_, name_, json_); });
-    sub->add_option("name", name_)->required();
+    sub->add_option("name", name_,
+                    "its name; of cullers also with parameters, or a chain: 'a[x=1] > b'")
+        ->required();
     add_json(sub);
   }
   void add_plan() {
@@ -118,22 +144,22 @@ class CommandLine {
     sub->add_option("--scene", run_.scene, "name, description, mesh or Quake III world")
         ->needs(culler);
     sub->add_option("--path", run_.path,
-                    "name or file of a camera path; fitted to the scene if not given")
+                    "name or file of a camera path; the scene's own if not given")
         ->needs(culler);
-    sub->add_option("--resolution", run_.resolution, "with --culler")
+    sub->add_option("--resolution", run_.resolution, "WIDTHxHEIGHT, pixels")
         ->needs(culler)
         ->capture_default_str();
-    sub->add_option("--frames", run_.frames, "with --culler; 0 = as many as the path has")
+    sub->add_option("--frames", run_.frames, "0 = as many as the path has")
         ->needs(culler)
         ->check(CLI::Range(0, 100000));
-    sub->add_option("--rounds", run_.rounds, "with --culler")
+    sub->add_option("--rounds", run_.rounds, "how often the whole path is measured")
         ->needs(culler)
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    sub->add_option("--draw", run_.draw, "with --culler: a device of 'vislab list devices'")
+    sub->add_option("--draw", run_.draw, "a device of 'vislab list devices'")
         ->needs(culler)
         ->capture_default_str();
-    sub->add_option("--threads", run_.threads, "0 = as the matrix says")
+    sub->add_option("--threads", run_.threads, "0 = as the matrix says; all with --culler")
         ->check(CLI::Range(0, 1024));
     sub->add_option("--filter", run_.filter, "only chains that contain this text");
     sub->add_option("--shard", run_.shard, "i/n: every n-th block, from the i-th");
@@ -174,19 +200,24 @@ class CommandLine {
         ->excludes(queries);
     sub->add_option("--depth-complexity", show_.depth_complexity,
                     "a heat map of rays, polygons or transparent, and the figures of all three");
-    sub->add_option("--scene", show_.scene)->required();
-    sub->add_option("--path", show_.path, "name or file of a camera path");
-    sub->add_option("--frame", show_.frame)->check(CLI::NonNegativeNumber)->capture_default_str();
-    sub->add_option("--resolution", show_.resolution)->capture_default_str();
+    sub->add_option("--scene", show_.scene, "name, description, mesh or Quake III world")
+        ->required();
+    sub->add_option("--path", show_.path,
+                    "name or file of a camera path; the scene's own if not given");
+    sub->add_option("--frame", show_.frame, "of the path; the first is 0")
+        ->check(CLI::Range(0, std::numeric_limits<int>::max()))
+        ->capture_default_str();
+    sub->add_option("--resolution", show_.resolution, "WIDTHxHEIGHT, pixels")
+        ->capture_default_str();
     sub->add_option("-o,--output", show_.output, "PNG file")->required();
     add_json(sub);
   }
   void add_compare() {
     CLI::App* const sub =
-        verb("compare", "two chains in all blocks that have both: frame time of A over B",
+        verb("compare", "is A faster or slower than B, and has it more or fewer errors?",
              [this] { return compare(lab_, name_, other_, run_.results, json_); });
-    sub->add_option("a", name_)->required();
-    sub->add_option("b", other_)->required();
+    sub->add_option("a", name_, "a culler or a chain that was measured")->required();
+    sub->add_option("b", other_, "what it is compared with")->required();
     add_results(sub);
     add_json(sub);
   }
@@ -240,6 +271,17 @@ class CommandLine {
                                [this] { return new_culler(lab_, name_); });
     sub->add_option("name", name_, "family.variant; the family may be a new one")->required();
   }
+  void add_help() {
+    CLI::App* const sub = verb("help", "what there is to call, or how one verb is called", [this] {
+      // help() of a program whose verb is known is that of the verb, so the formatter is asked.
+      std::cout << (explained_verb_.empty()
+                        ? app_.get_formatter()->make_help(&app_, app_.get_name(),
+                                                          CLI::AppFormatMode::Normal)
+                        : require_verb(explained_verb_)->help(app_.get_name()));
+      return 0;
+    });
+    sub->add_option("verb", explained_verb_, "one of the verbs");
+  }
   void add_baseline() {
     CLI::App* const sub =
         verb("baseline", "do cullers answer as committed? sets and counters of the matrix smoke",
@@ -256,6 +298,7 @@ class CommandLine {
   std::function<int()> action_;
   std::string name_, other_;
   std::string checked_culler_, checked_scene_;
+  std::string explained_verb_;
   std::filesystem::path check_picture_;
   bool write_baseline_ = false;
   bool json_ = false;

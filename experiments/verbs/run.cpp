@@ -208,6 +208,21 @@ std::string status_of(const Block& block, const BlockCuller& culler,
   return "open";
 }
 
+/// What is called by its name has to be described in the folder; files are read by the run.
+void require_described(const std::string& kind, const std::string& name,
+                       const std::filesystem::path& folder) {
+  if (name.find_first_of("/.") != std::string::npos || std::filesystem::exists(name) ||
+      std::filesystem::exists(folder / (name + ".toml"))) {
+    return;
+  }
+  std::vector<std::string> known;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".toml") known.push_back(entry.path().stem().string());
+  }
+  std::ranges::sort(known);
+  throw unknown_name(kind, name, known);
+}
+
 void require_filter_fits(const Lab& lab, const RunCall& call, const std::vector<Block>& blocks) {
   if (call.filter.empty()) return;
   std::set<std::string> names;
@@ -235,6 +250,12 @@ int plan(const Lab& lab, const RunCall& call) {
   if (std::filesystem::exists(call.results / "cells"))
     stored = present_cells(call.results, lab.cullers);
   const std::vector<Block> blocks = work_of(lab, call).blocks;
+  for (const Block& block : blocks) {
+    require_described("scene or file", block.scene, lab.data.data / "scenes");
+    if (!block.path.empty()) {
+      require_described("path or file", block.path, lab.data.data / "paths");
+    }
+  }
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const Block& block = blocks[i];
     for (const BlockCuller& culler : block.cullers) {

@@ -154,6 +154,17 @@ TEST_F(BadInput, AnUnknownMatrixNamesTheKnownOnes) {
                  {"no_such_matrix", "default"});
 }
 
+TEST_F(BadInput, APlanOfUnknownScenesOrPathsNamesTheKnownOnes) {
+  const auto matrix = [&](const std::string& scene, const std::string& path) {
+    return folder_.write("plan.toml", "[lists]\nculler = [\"none\"]\nscene = [\"" + scene +
+                                          "\"]\npath = [\"" + path +
+                                          "\"]\nresolution = [\"32x32\"]\n");
+  };
+  EXPECT_EQ(run_vislab({"plan", matrix("box_field_tiny", "orbit")}).exit_code, 0);
+  expect_refused(run_vislab({"plan", matrix("nowhere", "orbit")}), {"nowhere", "box_field_tiny"});
+  expect_refused(run_vislab({"plan", matrix("box_field_tiny", "away")}), {"away", "orbit"});
+}
+
 TEST_F(BadInput, AResultsFolderThatIsAFileIsRefused) {
   const fs::path file = folder_.write("file", "");
   const ProgramResult result =
@@ -252,11 +263,16 @@ TEST_F(BadInput, APictureOfQueriesNeedsAKnownKindAFrameAndACullerThatAsks) {
   EXPECT_FALSE(fs::exists(picture));
 }
 
-TEST_F(BadInput, WrongCallsEndWithCodeTwo) {
+TEST_F(BadInput, WrongCallsSayOneLineAndEndWithCodeTwo) {
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{},
         {"fly"},
+        {"help", "fly"},
+        {"--fly"},
+        {"list", "cullers", "all"},
+        {"describe"},
         {"run"},
+        {"show", "--scene", "box_field_tiny", "--frame", "first", "-o", "x.png"},
         {"run", "--culler", "none"},
         {"list", "colours"},
         {"describe", "nothing.known"},
@@ -270,7 +286,8 @@ TEST_F(BadInput, WrongCallsEndWithCodeTwo) {
         {"describe", "modelled[preset=voodoo]"},
         {"check", "--culler", "frustum.fast"},
         {"compare", "none", "frustum.fast"}}) {
-    EXPECT_EQ(run_vislab(arguments).exit_code, 2) << (arguments.empty() ? "" : arguments.front());
+    SCOPED_TRACE(arguments.empty() ? "" : arguments.front());
+    expect_refused(run_vislab(arguments), {"vislab: "});
   }
 }
 

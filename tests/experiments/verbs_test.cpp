@@ -1,4 +1,4 @@
-// The verbs that tell: list, describe, plan, export, compare, check, show.
+// The verbs that tell: help, list, describe, plan, export, compare, check, show.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -35,6 +35,18 @@ TEST(Verbs, ListNamesEveryKindOfThing) {
   EXPECT_TRUE(holds(names(run_vislab({"list", "scenes", "--json"}).out), "oa_dm2"));
   EXPECT_TRUE(holds(names(run_vislab({"list", "matrices", "--json"}).out), "default"));
   EXPECT_TRUE(holds(names(run_vislab({"list", "metrics", "--json"}).out), "false_px"));
+}
+
+TEST(Verbs, HelpNamesTheVerbsAndTellsAboutEachWhatItsOwnHelpDoes) {
+  const ProgramResult all = run_vislab({"help"});
+  EXPECT_EQ(all.exit_code, 0) << all.err;
+  EXPECT_EQ(all.out, run_vislab({"--help"}).out);
+  for (const char* verb : {"list", "run", "compare", "new-culler"}) {
+    EXPECT_NE(all.out.find(std::string("\n  ") + verb + " "), std::string::npos) << verb;
+    const ProgramResult one = run_vislab({"help", verb});
+    EXPECT_EQ(one.exit_code, 0) << one.err;
+    EXPECT_EQ(one.out, run_vislab({verb, "--help"}).out);
+  }
 }
 
 TEST(Verbs, DescribeTellsAboutEveryListedThing) {
