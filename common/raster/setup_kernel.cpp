@@ -304,7 +304,7 @@ class SetUp {
       const auto ea = hn::Mul(sense, hn::Sub(from.snapped_y, to.snapped_y));
       const auto eb = hn::Mul(sense, hn::Sub(to.snapped_x, from.snapped_x));
       const auto level = hn::Eq(ea, zero);
-      const auto owns = hn::Or(hn::Gt(ea, zero), hn::And(level, hn::Lt(eb, zero)));
+      const auto owns = hn::Or(hn::Gt(ea, zero), hn::And(level, hn::Gt(eb, zero)));
       auto at = hn::Add(hn::Mul(ea, hn::Sub(half, from.snapped_x)),
                         hn::Mul(eb, hn::Sub(half, from.snapped_y)));
       at = hn::Sub(at, hn::IfThenElse(owns, zero, set(1.0)));

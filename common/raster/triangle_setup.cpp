@@ -153,8 +153,8 @@ std::int64_t inset(const std::array<Snapped, count>& corners, const Viewport& vi
 WindowEdge edge(const Snapped& p, const Snapped& q, std::int64_t inset) {
   const std::int64_t a = std::int64_t{p.y} - q.y;
   const std::int64_t b = std::int64_t{q.x} - p.x;
-  // Left edges run down, top edges run left: the inside is to the left of an edge.
-  const bool owns_border = a > 0 || (a == 0 && b < 0);
+  // Left edges run down, lower edges run right: the inside is to the left of an edge.
+  const bool owns_border = a > 0 || (a == 0 && b > 0);
   std::int64_t value = a * (subpixels / 2 - std::int64_t{p.x}) +
                        b * (subpixels / 2 - std::int64_t{p.y}) - (owns_border ? 0 : 1);
   value -= (std::abs(a) + std::abs(b)) * inset;

@@ -2,10 +2,11 @@
 // functions and a plane of nearness. Every rasteriser of the lab works from this, so that all of
 // them cover the same pixels and see the same depths, bit for bit.
 //
-// Idea: vertices are snapped to 1/256 pixel; edge functions are exact integers (Pineda 1988), with
-//   the top-left rule, so that of two triangles with an edge in common exactly one has a pixel
-//   whose centre lies on it. The plane of nearness comes from the triangle before it was snapped
-//   or clipped.
+// Idea: vertices are snapped to 1/256 pixel; edge functions are exact integers (Pineda 1988). With
+//   an edge in common, exactly one of two triangles has a pixel whose centre lies on it: the upper
+//   or, at upright edges, the right one, as the graphics device does it (OpenGL leaves this open).
+//   By another rule a row of pixels would hide what the device shows. The plane of nearness comes
+//   from the triangle before it was snapped or clipped.
 // Coverage: a pixel counts if its centre does, or (whole_pixels) if all of it lies inside of the
 //   triangle, by more than snapping can move an edge.
 // Depth: exact up to rounding, or (lowered) never nearer than the triangle is: the plane is lowered
