@@ -246,6 +246,34 @@ SmallScene rooms() {
       small_viewport};
 }
 
+/// Covers with edges through centres of pixels, but for what snapping moves them, and behind each
+/// something that stands out by one row or column of pixels: what a rasteriser covers there that
+/// the device does not cover is missing from the image.
+SmallScene edges_on_pixel_centres() {
+  std::vector<Object> objects;
+  for (int i = 0; i < 12; ++i) {
+    // Pixels are squares of 1 m; 1/1024 m is less than half a step of a device's grid.
+    const double beside = i % 3 == 0 ? 0.0 : (i % 3 == 1 ? 1.0 : -1.0) / 1024.0;
+    const double half_width = 3.0, half_height = 4.0;
+    const glm::dvec3 at(-24.5 + 16.0 * (i % 4), -15.5 + 15.0 * (i / 4), 0.0);
+    objects.push_back({0, placed(at, {half_width + beside, half_height + beside, 0.5}), none_id});
+    for (const glm::dvec3& side : {glm::dvec3(half_width, 0.0, 0.0),
+                                   {-half_width, 0.0, 0.0},
+                                   {0.0, half_height, 0.0},
+                                   {0.0, -half_height, 0.0}}) {
+      // Beside the centre, which would lie on the diagonal of the small one's face else.
+      const glm::dvec3 behind = at + side + glm::dvec3(0.0625, 0.03125, -3.0);
+      objects.push_back({0, placed(behind, {0.25, 0.25, 0.5}), none_id});
+    }
+  }
+  Camera upside_down = orthographic_at({0.0, 0.0, 30.0}, {0.0, 0.0, 0.0}, 48.0);
+  upside_down.pose.right = -upside_down.pose.right;
+  upside_down.pose.up = -upside_down.pose.up;
+  return {"edges through the centres of pixels", scene_of({cube_mesh()}, objects),
+          standing({orthographic_at({0.0, 0.0, 30.0}, {0.0, 0.0, 0.0}, 48.0), upside_down}),
+          small_viewport};
+}
+
 }  // namespace
 
 Mesh sphere_mesh(int rings) {
@@ -294,6 +322,7 @@ std::vector<SmallScene> small_scenes() {
   scenes.push_back(open_sheets());
   scenes.push_back(streets());
   scenes.push_back(rooms());
+  scenes.push_back(edges_on_pixel_centres());
   return scenes;
 }
 
