@@ -20,7 +20,17 @@ std::string place_of(const PublishedRow& row, const OwnFigure& own) {
             ", " + std::to_string(block.frames) + " frames";
     if (!row.device.empty()) place += ", " + block.device;
   }
-  return row.stand_in.empty() ? place : place + ": " + row.stand_in;
+  if (row.compares_places()) {
+    place += ", against " + (row.against_scene.empty() ? row.scene : row.against_scene) + ", " +
+             (row.against_path.empty() ? row.path : row.against_path);
+  }
+  if (!row.stand_in.empty()) place += ": " + row.stand_in;
+  if (own.cell != nullptr && own.is_out_of_reach(row)) {
+    place += ". Drawing nothing but what is visible gives " +
+             (row.is_share() ? format_percent(own.reach) : format_number(own.reach)) +
+             " there: the scene cannot show more";
+  }
+  return place;
 }
 
 std::string own_text(const PublishedRow& row, const OwnFigure& own) {

@@ -374,6 +374,7 @@ std::vector<Reprint> reprints_of(const Erratum& erratum,
     if (!figures.source.starts_with(erratum.source)) continue;
     for (const PublishedRow& row : figures.rows) {
       if (row.without_fps <= 0.0 || row.with_fps <= 0.0 || row.scene.empty()) continue;
+      if (row.compares_places()) continue;  // its figures stand in other rows already
       reprints.push_back(reprint_of(row, wrong, right, blocks));
     }
   }

@@ -71,7 +71,9 @@ void read_place(const toml::table& table, const Registry& registry, const std::s
   if (const auto device = value_of<std::string>(table, "device", "a text", file)) {
     row.device = canonical_device(*device, table.get("device"), file);
   }
-  row.compares = is_time(row.metric) || table.contains("against");
+  row.against_scene = value_of<std::string>(table, "against_scene", "a text", file).value_or("");
+  row.against_path = value_of<std::string>(table, "against_path", "a text", file).value_or("");
+  row.compares = is_time(row.metric) || table.contains("against") || row.compares_places();
   const std::string culler = text_of(table, "culler", file);
   const std::string against =
       value_of<std::string>(table, "against", "a text", file).value_or("none");
@@ -87,10 +89,11 @@ void read_place(const toml::table& table, const Registry& registry, const std::s
 
 PublishedRow read_row(const toml::table& table, double tolerance, const Registry& registry,
                       const std::string& file) {
-  refuse_unknown_keys(table,
-                      {"what", "table", "without_fps", "with_fps", "published", "accept", "metric",
-                       "scene", "path", "device", "culler", "against", "cannot_be_told"},
-                      "[[row]]", file);
+  refuse_unknown_keys(
+      table,
+      {"what", "table", "without_fps", "with_fps", "published", "accept", "metric", "scene", "path",
+       "device", "culler", "against", "against_scene", "against_path", "cannot_be_told"},
+      "[[row]]", file);
   PublishedRow row;
   row.what = text_of(table, "what", file);
   row.table = text_of(table, "table", file);
@@ -101,7 +104,8 @@ PublishedRow read_row(const toml::table& table, double tolerance, const Registry
     row.with_fps = frames_a_second(table, "with_fps", file);
   }
   if (const auto why = value_of<std::string>(table, "cannot_be_told", "a text", file)) {
-    for (const char* key : {"accept", "metric", "scene", "path", "device", "culler", "against"}) {
+    for (const char* key : {"accept", "metric", "scene", "path", "device", "culler", "against",
+                            "against_scene", "against_path"}) {
       if (table.contains(key)) {
         throw InputError(place(file, table) + ": a row that cannot be told has no " + key);
       }
@@ -153,12 +157,18 @@ Estimate measure_of(const CellSummary& cell, const CellSummary& none, const Publ
       return cell.cull_us.median;
     case PublishedRow::Metric::culled:
       return exact(1.0 - cell.submitted_triangles / none.submitted_triangles);
-    case PublishedRow::Metric::decision_share:
-      return exact((cell.update_us.median.value + cell.cull_us.median.value) / 1e3 /
-                   cell.frame_ms.median.value);
+    case PublishedRow::Metric::decision_share: {
+      const Estimate& update = cell.update_us.median;
+      const Estimate& cull = cell.cull_us.median;
+      const Estimate& frame = cell.frame_ms.median;
+      return {(update.value + cull.value) / 1e3 / frame.value,
+              (update.low + cull.low) / 1e3 / frame.high,
+              (update.high + cull.high) / 1e3 / frame.low};
+    }
     case PublishedRow::Metric::named:
       break;
   }
+  if (row.metric_name == "frame_ms_deviation") return cell.frame_ms.deviation;
   return exact(cell.metric(row.metric_name));
 }
 
@@ -181,19 +191,59 @@ Estimate quotient(const Estimate& above, const Estimate& below) {
   return {value, value * std::exp(-down), value * std::exp(up)};
 }
 
-/// NaN if a part of it was not measured.
-Estimate figure_of(const BlockSummary& block, const CellSummary& cell, const PublishedRow& row) {
+/// NaN if a part of it was not measured. `there` is the block of `against`.
+Estimate figure_of(const BlockSummary& block, const CellSummary& cell, const BlockSummary& there,
+                   const PublishedRow& row) {
   const CellSummary* const none = find_cell(block, "none");
-  const CellSummary* const against = find_cell(block, row.against);
-  if (none == nullptr || against == nullptr) return Estimate::none();
+  const CellSummary* const against = find_cell(there, row.against);
+  const CellSummary* const none_there = find_cell(there, "none");
+  if (none == nullptr || against == nullptr || none_there == nullptr) return Estimate::none();
+  if (&there != &block && row.metric == PublishedRow::Metric::frame_ms) {
+    // Each block has its own none: what counts is how long frames take.
+    return quotient(against->frame_ms.median, cell.frame_ms.median);
+  }
   const Estimate own = measure_of(cell, *none, row);
   if (!row.compares || !own.measured()) return own;
   if (row.metric == PublishedRow::Metric::frame_ms && against == none) {
     // none's ratio to itself is 1, without an interval.
     return {1.0 / own.value, 1.0 / own.high, 1.0 / own.low};
   }
-  const Estimate other = measure_of(*against, *none, row);
+  const Estimate other = measure_of(*against, *none_there, row);
   return is_time(row.metric) ? quotient(other, own) : quotient(own, other);
+}
+
+/// What OwnFigure::reach is; `there` is the block of `against`.
+double reach_of(const BlockSummary& block, const BlockSummary& there, const PublishedRow& row) {
+  const bool is_share = row.metric == PublishedRow::Metric::culled && !row.compares;
+  const bool is_frame = row.metric == PublishedRow::Metric::frame_ms && &there == &block;
+  double best = std::numeric_limits<double>::quiet_NaN();
+  if (!is_share && !is_frame) return best;
+  for (const CellSummary& cell : block.cells) {
+    if (!cell.anchor || !cell.canonical.starts_with("oracle")) continue;
+    if (cell.status != ResultCell::Status::done) continue;
+    const Estimate figure = figure_of(block, cell, there, row);
+    if (figure.measured() && !(best >= figure.high)) best = figure.high;
+  }
+  return best;
+}
+
+/// Where `against` stands: in the block itself, or in another of the same resolution, device and
+/// machine. Null if it was not measured.
+const BlockSummary* place_of_other(const BlockSummary& block, const PublishedRow& row,
+                                   const std::vector<BlockSummary>& blocks) {
+  if (!row.compares_places()) return find_cell(block, row.against) == nullptr ? nullptr : &block;
+  const std::string& scene = row.against_scene.empty() ? block.scene : row.against_scene;
+  const std::string& path = row.against_path.empty() ? block.path : row.against_path;
+  const BlockSummary* best = nullptr;
+  for (const BlockSummary& other : blocks) {
+    const bool is_like = other.viewport.width == block.viewport.width &&
+                         other.viewport.height == block.viewport.height &&
+                         other.device == block.device && other.machines == block.machines;
+    if (other.scene != scene || other.path != path || !is_like) continue;
+    if (find_cell(other, row.against) == nullptr) continue;
+    if (best == nullptr || other.frames > best->frames) best = &other;
+  }
+  return best;
 }
 
 /// Orders the blocks that may stand for a row: the more the better.
@@ -223,12 +273,13 @@ OwnFigure own_figure(const PublishedRow& row, const std::vector<BlockSummary>& b
     if (row.device.empty() ? !block.device_models.empty() : block.device != row.device) continue;
     if (block.scene != row.scene || (!row.path.empty() && block.path != row.path)) continue;
     const CellSummary* const cell = find_cell(block, row.culler);
-    if (cell == nullptr || find_cell(block, row.against) == nullptr) continue;
+    const BlockSummary* const there = place_of_other(block, row, blocks);
+    if (cell == nullptr || there == nullptr) continue;
     if (own.block != nullptr && weight_of(block) <= weight_of(*own.block)) continue;
-    const Estimate figure = figure_of(block, *cell, row);
+    const Estimate figure = figure_of(block, *cell, *there, row);
     // Times that were not taken are no figure; 0 against 0 is one that says nothing.
     if (is_time(row.metric) && !figure.measured()) continue;
-    own = {&block, cell, figure};
+    own = {&block, cell, there == &block ? nullptr : there, figure, reach_of(block, *there, row)};
   }
   return own;
 }
@@ -254,6 +305,7 @@ ClaimVerdict verdict_of(const PublishedRow& row, const OwnFigure& own) {
   if (figure.low >= row.accept.low && figure.high <= row.accept.high) {
     return ClaimVerdict::confirmed;
   }
+  if (own.is_out_of_reach(row)) return ClaimVerdict::cannot_be_told;
   if (figure.high < row.accept.low || figure.low > row.accept.high) {
     return ClaimVerdict::not_confirmed;
   }

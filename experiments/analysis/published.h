@@ -24,11 +24,15 @@
 //   against = "none"               what it is compared with. Left out: none for times; all other
 //                                  metrics stand for themselves, and are divided by that of
 //                                  `against` if there is one
+//   against_scene = "hares_14"     where that stands, if elsewhere; left out: on the same scene
+//   against_path = "hares_walk"    and the same path
 //   cannot_be_told = "…"           instead of accept, metric, scene, path, device, culler and
 //                                  against: why nothing here can stand beside the figure
 //
 // The rule: a claim is confirmed where the whole interval of our figure lies in `accept`, not
-// confirmed where all of it lies outside, and cannot be told where it does both.
+// confirmed where all of it lies outside, and cannot be told where it does both; nor where it lies
+// below and our scene cannot show more, because not even the oracle, which draws nothing but what
+// is visible, gets as far as `accept`.
 #pragma once
 
 #include <filesystem>
@@ -52,13 +56,17 @@ struct PublishedRow {
   std::string cannot_be_told = {};  // if not empty, the row has no figure of ours
   std::string metric_name = {};     // of Metric::named, as CellSummary::metric has it
   std::string device = {};          // as parse_device writes it; "": any real one
-  std::string stand_in = {};        // what the scene stands for; "" if that needs no words
+  std::string against_scene = {},
+              against_path = {};  // where `against` stands; "": in the same place
+  std::string stand_in = {};      // what the scene stands for; "" if that needs no words
   /// Our figures from `low` to `high` confirm the claim.
   struct {
     double low = 0.0, high = std::numeric_limits<double>::infinity();
   } accept = {};
   /// Is our figure a quotient of two methods'? (Else it is the metric itself.)
   bool compares = true;
+
+  bool compares_places() const { return !against_scene.empty() || !against_path.empty(); }
 
   bool is_share() const {
     return !compares && (metric == Metric::culled || metric == Metric::decision_share);
@@ -82,10 +90,21 @@ std::vector<PublishedFigures> load_published(const std::filesystem::path& folder
 struct OwnFigure {
   const BlockSummary* block = nullptr;
   const CellSummary* cell = nullptr;
+  /// The block of `against`, if that is another one.
+  const BlockSummary* other = nullptr;
   /// Our figure (see the head of this file). frame_ms against none is paired by frame and round;
-  /// other quotients of times are those of two such ratios, or of the medians of cull_us, and the
-  /// errors of both add up; whatever is no time has no interval. NaN for 0 against 0.
+  /// other quotients of times are those of two such ratios, of the medians of cull_us, or, between
+  /// blocks, of frame_ms, and the errors of both add up; so do those of deviations and of shares of
+  /// the time. Whatever else is no time has no interval. NaN for 0 against 0.
   Estimate ratio = Estimate::none();
+  /// The same figure of the best oracle in the block, the most that any method could reach there;
+  /// of frame times in one place and of shares of all triangles only, else NaN.
+  double reach = std::numeric_limits<double>::quiet_NaN();
+
+  /// Is ours below what would confirm the claim, and so is all that the scene could show?
+  bool is_out_of_reach(const PublishedRow& row) const {
+    return ratio.high < row.accept.low && reach < row.accept.low;
+  }
 };
 
 /// Of several blocks of the row's scene and path the one with the most frames, then with the most

@@ -89,6 +89,41 @@ Estimate median_of_frames(const SampleGrid& rounds) {
                    });
 }
 
+Estimate standard_deviation(const SampleGrid& rounds) {
+  double mean = 0.0;
+  std::size_t count = 0;
+  for (const RoundSamples& round : rounds) {
+    count += round.size();
+    for (const double sample : round) mean += sample;
+  }
+  if (count == 0) return Estimate::none();
+  mean /= static_cast<double>(count);
+  // Sums about the mean of all: those of resampled rounds are sums of these.
+  struct Sums {
+    double count = 0.0, first = 0.0, second = 0.0;
+  };
+  std::vector<Sums> sums;
+  for (const RoundSamples& round : rounds) {
+    Sums& own = sums.emplace_back();
+    own.count = static_cast<double>(round.size());
+    for (const double sample : round) {
+      own.first += sample - mean;
+      own.second += (sample - mean) * (sample - mean);
+    }
+  }
+  return bootstrap(rounds.size(), 1, false, [&](const auto& round_indices, const auto&) {
+    Sums all;
+    for (const std::size_t r : round_indices) {
+      all.count += sums[r].count;
+      all.first += sums[r].first;
+      all.second += sums[r].second;
+    }
+    if (!(all.count > 0.0)) return nan;
+    const double shift = all.first / all.count;
+    return std::sqrt(std::max(0.0, all.second / all.count - shift * shift));
+  });
+}
+
 Estimate paired_ratio(const SampleGrid& numerator, const SampleGrid& denominator) {
   if (is_empty(numerator)) return Estimate::none();
   SampleGrid ratios = numerator;

@@ -35,6 +35,11 @@ double median(std::vector<double> samples);
 /// say too little.
 Estimate median_of_frames(const SampleGrid& rounds);
 
+/// Standard deviation of all samples. The interval comes from resampling rounds, so that it has no
+/// width where there is one round only; NaN without samples. Rounds may differ in length here.
+/// O(samples + resamples × rounds).
+Estimate standard_deviation(const SampleGrid& rounds);
+
 /// Median of numerator / denominator over all pairs: the same round and the same frame of both
 /// grids, which have the same shape. Pairs without a positive denominator do not count. The
 /// interval comes from resampling as in median_of_frames().

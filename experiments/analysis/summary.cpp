@@ -26,25 +26,15 @@ double ratio(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? nan : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-double standard_deviation(const std::vector<double>& samples) {
-  if (samples.empty()) return nan;
-  const auto count = static_cast<double>(samples.size());
-  double mean = 0.0;
-  for (const double sample : samples) mean += sample / count;
-  double variance = 0.0;
-  for (const double sample : samples) variance += (sample - mean) * (sample - mean) / count;
-  return std::sqrt(variance);
-}
-
 TimeSummary summarise_time(const std::vector<Round>& rounds, std::vector<double> Round::*samples) {
   SampleGrid grid;
   std::vector<double> all;
-  std::vector<double> later;
+  SampleGrid later;
   for (const Round& round : rounds) {
     grid.push_back(round.*samples);
     const RoundSamples& last = grid.back();
     all.insert(all.end(), last.begin(), last.end());
-    if (last.size() > 1) later.insert(later.end(), last.begin() + 1, last.end());
+    if (last.size() > 1) later.emplace_back(last.begin() + 1, last.end());
   }
   TimeSummary time;
   time.median = median_of_frames(grid);
@@ -374,7 +364,7 @@ double CellSummary::metric(const std::string& name) const {
   if (name == "cull_us") return cull_us.median.value;
   if (name == "draw_ms") return draw_ms.median.value;
   if (name == "frame_ms") return frame_ms.median.value;
-  if (name == "frame_ms_deviation") return frame_ms.deviation;
+  if (name == "frame_ms_deviation") return frame_ms.deviation.value;
   if (name == "modelled_frame_ms") return modelled_frame_ms;
   if (name == "bytes") return static_cast<double>(bytes);
   if (name == "submitted_triangles") return submitted_triangles;

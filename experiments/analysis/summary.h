@@ -18,7 +18,7 @@ struct TimeSummary {
   double worst = 0.0;
   /// Standard deviation of all samples but the first of each round, when nothing is known yet of
   /// the path; of a single frame NaN.
-  double deviation = 0.0;
+  Estimate deviation;
 
   bool measured() const { return median.measured(); }
 };

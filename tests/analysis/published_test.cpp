@@ -60,7 +60,9 @@ TEST_F(Published, AClaimIsConfirmedWhereTheWholeIntervalIsAcceptable) {
   const auto verdict = [&](const std::string& accept, Estimate figure) {
     const PublishedRow row = rows(claim + "accept = " + accept + "\n" + place_keys).at(0);
     const BlockSummary block = this->block();
-    return verdict_of(row, {&block, &block.cells.back(), figure});
+    OwnFigure own{&block, &block.cells.back()};
+    own.ratio = figure;
+    return verdict_of(row, own);
   };
   EXPECT_EQ(verdict("[1.0, 3.0]", {2.0, 1.0, 3.0}), ClaimVerdict::confirmed);
   EXPECT_EQ(verdict("[1.0, inf]", {50.0, 40.0, 60.0}), ClaimVerdict::confirmed);
@@ -70,6 +72,21 @@ TEST_F(Published, AClaimIsConfirmedWhereTheWholeIntervalIsAcceptable) {
   EXPECT_EQ(verdict("[1.0, 3.0]", {2.0, 0.5, 4.0}), ClaimVerdict::cannot_be_told);
   EXPECT_EQ(verdict("[0, 0]", {0.0, 0.0, 0.0}), ClaimVerdict::confirmed);
   EXPECT_EQ(verdict("[1.0, 3.0]", Estimate::none()), ClaimVerdict::cannot_be_told);
+}
+
+TEST_F(Published, WhatNotEvenTheOracleReachesCannotBeTold) {
+  BlockSummary block = this->block();  // ours is twice as fast as none, the oracle 11 times
+  const auto verdict = [&](const std::string& accept) {
+    const PublishedRow row = rows(claim + "accept = " + accept + "\n" + place_keys).at(0);
+    return verdict_of(row, own_figure(row, {block}));
+  };
+  EXPECT_EQ(verdict("[20, 30]"), ClaimVerdict::cannot_be_told);
+  EXPECT_EQ(verdict("[5, 30]"), ClaimVerdict::not_confirmed);
+  EXPECT_EQ(verdict("[0, 1]"), ClaimVerdict::not_confirmed);
+  EXPECT_EQ(verdict("[1, 3]"), ClaimVerdict::confirmed);
+  std::erase_if(block.cells,
+                [](const CellSummary& cell) { return cell.canonical.starts_with("oracle"); });
+  EXPECT_EQ(verdict("[20, 30]"), ClaimVerdict::not_confirmed) << "how far is unknown";
 }
 
 TEST_F(Published, WhatWasNotRunOrCannotBeToldSaysSo) {
@@ -136,6 +153,55 @@ TEST_F(Published, ModelledDevicesCountOnlyForRowsThatNameThem) {
   EXPECT_EQ(own_figure(there, {block()}).cell, nullptr);
 }
 
+TEST_F(Published, PlacesAreComparedByHowLongFramesTakeThere) {
+  BlockSummary far = block();
+  far.scene = "village";
+  far.path = "walk";
+  BlockSummary near = block();
+  near.path = far.path;
+  const auto takes = [&](BlockSummary& block, Estimate ms) {
+    for (CellSummary& cell : block.cells) {
+      if (cell.canonical == registry_.canonical("frustum.flat")) cell.frame_ms.median = ms;
+    }
+  };
+  takes(near, {10.0, 8.0, 12.0});
+  takes(far, {5.0, 5.0, 5.0});
+  const PublishedRow row =
+      rows(claim + "accept = [0, 1]\nagainst = \"frustum.flat\"\nagainst_scene = \"village\"\n" +
+           place_keys)
+          .at(0);
+  EXPECT_TRUE(row.compares_places());
+  const std::vector<BlockSummary> both{near, far};
+  const OwnFigure own = own_figure(row, both);
+  EXPECT_EQ(own.other, &both[1]);
+  EXPECT_DOUBLE_EQ(own.ratio.value, 0.5);
+  EXPECT_NEAR(own.ratio.low, 5.0 / 12.0, 1e-12);
+  EXPECT_NEAR(own.ratio.high, 5.0 / 8.0, 1e-12);
+  EXPECT_EQ(own_figure(row, {near}).cell, nullptr) << "the other place was not run";
+  far.viewport.width *= 2;
+  EXPECT_EQ(own_figure(row, {near, far}).cell, nullptr) << "images of another size";
+}
+
+TEST_F(Published, SpreadsAndSharesOfTheTimeHaveIntervals) {
+  BlockSummary block = this->block();
+  for (CellSummary& cell : block.cells) {
+    cell.frame_ms.deviation = {2.0, 1.0, 4.0};
+    cell.frame_ms.median = {10.0, 8.0, 16.0};
+    cell.update_us.median = {1000.0, 800.0, 1200.0};
+    cell.cull_us.median = {1000.0, 800.0, 1200.0};
+  }
+  const auto figure = [&](const std::string& keys) {
+    return own_figure(rows(claim + "accept = [0, 1]\n" + place_keys + keys).at(0), {block}).ratio;
+  };
+  const Estimate spread = figure("metric = \"frame_ms_deviation\"\nagainst = \"frustum.bvh\"\n");
+  EXPECT_DOUBLE_EQ(spread.value, 1.0);
+  EXPECT_NEAR(spread.high, std::exp(std::hypot(std::log(2.0), std::log(2.0))), 1e-12);
+  const Estimate share = figure("metric = \"decision_share\"\n");
+  EXPECT_DOUBLE_EQ(share.value, 0.2);
+  EXPECT_DOUBLE_EQ(share.low, 0.1);
+  EXPECT_DOUBLE_EQ(share.high, 0.3);
+}
+
 TEST_F(Published, RowsSayWhatTheirScenesStandFor) {
   const auto all = rows("[stand_ins]\ncity = \"a city of 2012\"\n" + claim + "accept = [1, 2]\n" +
                         place_keys + claim + "cannot_be_told = \"lost\"\n");
@@ -170,10 +236,12 @@ std::vector<PublishedFigures> own_files(const Registry& registry) {
 TEST_F(Published, TheMatrixSeedsHasTheCellsOfEveryClaim) {
   const Matrix seeds = load_matrix(
       "seeds", std::filesystem::path(VISLAB_SOURCE_DIR) / "experiments" / "matrices", registry_);
-  const auto has = [&](const PublishedRow& row, const std::string& chain) {
+  const auto has = [&](const PublishedRow& row, const std::string& chain, bool other = false) {
+    const std::string& scene = other && !row.against_scene.empty() ? row.against_scene : row.scene;
+    const std::string& path = other && !row.against_path.empty() ? row.against_path : row.path;
     return std::ranges::any_of(seeds.blocks, [&](const Block& block) {
       const bool there =
-          block.scene == row.scene && (row.path.empty() || block.path == row.path) &&
+          block.scene == scene && (path.empty() || block.path == path) &&
           (row.device.empty() ? !block.device.starts_with("modelled") : block.device == row.device);
       return there && std::ranges::any_of(block.cullers, [&](const BlockCuller& culler) {
                return culler.chain == chain;
@@ -187,7 +255,7 @@ TEST_F(Published, TheMatrixSeedsHasTheCellsOfEveryClaim) {
       if (!row.cannot_be_told.empty()) continue;
       EXPECT_TRUE(has(row, row.culler))
           << figures.title << ": " << row.what << ": " << row.short_culler << " on " << row.scene;
-      EXPECT_TRUE(has(row, row.against))
+      EXPECT_TRUE(has(row, row.against, true))
           << figures.title << ": " << row.what << ": " << row.short_against << " on " << row.scene;
     }
   }

@@ -102,6 +102,18 @@ TEST(Statistics, NothingMeasuredGivesNoEstimate) {
   EXPECT_FALSE(paired_ratio({}, {}).measured());
 }
 
+TEST(Statistics, SpreadIsThatOfAllSamplesWithAnIntervalOfRounds) {
+  EXPECT_DOUBLE_EQ(standard_deviation({{1.0, 3.0}, {5.0, 7.0}}).value, std::sqrt(5.0));
+  const Estimate alike = standard_deviation({{1.0, 3.0}, {3.0, 1.0}, {1.0, 3.0}});
+  EXPECT_DOUBLE_EQ(alike.low, 1.0);
+  EXPECT_DOUBLE_EQ(alike.high, 1.0);
+  const Estimate unlike = standard_deviation({{1.0, 3.0}, {2.0, 2.0}, {0.0, 9.0}, {1.0, 2.0}});
+  EXPECT_LT(unlike.low, unlike.value);
+  EXPECT_GT(unlike.high, unlike.value);
+  EXPECT_FALSE(standard_deviation({}).measured());
+  EXPECT_FALSE(standard_deviation({{}, {}}).measured());
+}
+
 TEST(Statistics, TheSameSamplesGiveTheSameInterval) {
   SampleGrid rounds;
   for (int r = 0; r < 7; ++r) rounds.push_back({1.0 + r, 2.0 + 3.0 * r, 4.0 - 0.1 * r});

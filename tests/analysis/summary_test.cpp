@@ -76,7 +76,7 @@ TEST(Summary, RatiosPairRoundsOfTheSameSessionAndNumber) {
   EXPECT_DOUBLE_EQ(cell.against_none.high, 0.5);
   EXPECT_DOUBLE_EQ(cell.frame_ms.median.value, 6.0);  // medians of the frames: 4 and 8
   EXPECT_DOUBLE_EQ(cell.frame_ms.worst, 12.0);
-  EXPECT_DOUBLE_EQ(cell.frame_ms.deviation, 4.0);  // of 4 and 12
+  EXPECT_DOUBLE_EQ(cell.frame_ms.deviation.value, 4.0);  // of 4 and 12
   EXPECT_DOUBLE_EQ(cell.metric("frame_ms_deviation"), 4.0);
 }
 
