@@ -28,6 +28,7 @@ constexpr double axis_height = 50.0;  // tick labels and title below a panel
 constexpr double mark_radius = 4.5;
 constexpr double digit_width = 6.0;
 constexpr double label_height = 10.0;
+constexpr double shared_label_reach = 11.0;  // marks nearer than this share a label
 
 constexpr const char* reference_colour = "#000000";
 constexpr const char* hull_style = "lw 1.6 lc rgb '#9A9A9A'";
@@ -52,7 +53,7 @@ struct Mark {
   int shape = 0;
   bool named = true;                // in the legend, with its interval
   bool on_curve = false;            // the curve has an entry in the legend for all its marks
-  std::vector<std::string> labels;  // in the panels, beside the mark
+  std::vector<std::string> labels;  // values of dials, in the panels beside the mark
 };
 
 /// A curve over a dial, as places in the list of marks.
@@ -92,18 +93,10 @@ std::vector<Mark> marks_of(const BlockSummary& block, const ChartChoice& takes) 
   return marks;
 }
 
-/// "3, 5–8": numbers in ascending order.
-std::string number_list(std::vector<std::size_t> numbers) {
-  std::ranges::sort(numbers);
-  std::string list;
-  for (std::size_t i = 0; i < numbers.size();) {
-    std::size_t end = i + 1;
-    while (end < numbers.size() && numbers[end] == numbers[end - 1] + 1) ++end;
-    list += (list.empty() ? "" : ", ") + std::to_string(numbers[i]);
-    if (end - i > 1) list += (end - i == 2 ? ", " : "–") + std::to_string(numbers[end - 1]);
-    i = end;
-  }
-  return list;
+/// Of UTF-8.
+double letters_of(const std::string& text) {
+  return static_cast<double>(std::ranges::count_if(
+      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
 std::string cut(std::string text) {
@@ -203,7 +196,6 @@ class ChartWriter {
       }
     }
     for (Mark& mark : marks_) {
-      if (mark.named && !mark.on_curve) mark.labels.push_back(std::to_string(mark.number));
       if (mark.cell->anchor || mark.on_curve) continue;
       const Look look = mark.named ? method_look(looks++) : Look{other_colour, other_shape};
       mark.colour = look.colour;
@@ -347,45 +339,65 @@ class ChartWriter {
     return {pixel_x(panel, x_[mark].value), pixel_y(panels_[panel], panels_[panel].values[mark])};
   }
 
+  /// Marks on a hull first: if there is no room for all, theirs have to stand there.
+  std::vector<NumberedPoint> numbered_points(std::size_t index) const {
+    const std::vector<std::size_t> hull = hull_marks(index);
+    std::vector<NumberedPoint> points;
+    for (const bool on_hull : {true, false}) {
+      for (std::size_t i = 0; i < marks_.size(); ++i) {
+        if (!marks_[i].named || marks_[i].on_curve) continue;
+        if ((std::ranges::count(hull, i) > 0) != on_hull) continue;
+        const glm::dvec2 at = place_of(index, i);
+        points.push_back({at.x, at.y, marks_[i].number});
+      }
+    }
+    return points;
+  }
+
   void write_labels(std::size_t index, const std::vector<ChartBox>& lines) {
-    const Panel& panel = panels_[index];
     std::vector<LabelRequest> requests;
     std::vector<std::string> texts;
     std::vector<ChartBox> obstacles;
     for (const ChartBox& line : lines) {
       obstacles.push_back({line.left - 1.0, line.bottom - 1.0, line.right + 1.0, line.top + 1.0});
     }
+    const auto request = [&](double x, double y, const std::string& text, double letter) {
+      texts.push_back(text);
+      requests.push_back({x, y, letter * letters_of(text), label_height});
+    };
+    for (const PointGroup& group : group_points(numbered_points(index), shared_label_reach)) {
+      request(group.x, group.y, number_list(group.numbers), digit_width);
+    }
     for (std::size_t i = 0; i < marks_.size(); ++i) {
-      const double x = pixel_x(index, x_[i].value);
-      const double y = pixel_y(panel, panel.values[i]);
-      obstacles.push_back({x - mark_radius, y - mark_radius, x + mark_radius, y + mark_radius});
-      if (!marks_[i].named) continue;
-      for (const std::string& label : marks_[i].labels) {
-        texts.push_back(label);
-        const double letter = marks_[i].on_curve ? letter_width : digit_width;
-        requests.push_back({x, y, letter * static_cast<double>(label.size()), label_height});
-      }
+      const glm::dvec2 at = place_of(index, i);
       obstacles.push_back(
-          {pixel_x(index, x_[i].low), y - 1.0, pixel_x(index, x_[i].high), y + 1.0});
+          {at.x - mark_radius, at.y - mark_radius, at.x + mark_radius, at.y + mark_radius});
+      if (!marks_[i].named) continue;
+      for (const std::string& label : marks_[i].labels) request(at.x, at.y, label, letter_width);
+      obstacles.push_back(
+          {pixel_x(index, x_[i].low), at.y - 1.0, pixel_x(index, x_[i].high), at.y + 1.0});
     }
     const ChartBox frame{panel_left[index] + 2.0, panel_bottom_ + 1.0,
                          panel_left[index] + panel_width + 8.0, panel_bottom_ + panel_height_};
     const std::vector<PlacedLabel> labels = place_labels(requests, obstacles, frame);
     for (std::size_t i = 0; i < labels.size(); ++i) {
       const PlacedLabel& label = labels[i];
+      if (!label.is_legible) continue;  // symbol and colour are in the legend
       if (label.leader) write_leader(requests[i], label);
       out_ << "set label " << quoted(texts[i]) << " at screen " << label.x / chart_width << ','
            << label.y / chart_height_ << " center font ',10' front\n";
     }
   }
 
-  /// From the edge of the mark to the edge of the number.
+  /// From the edge of the mark to the edge of the label.
   void write_leader(const LabelRequest& point, const PlacedLabel& label) {
     const double dx = label.x - point.x;
     const double dy = label.y - point.y;
-    const double length = std::hypot(dx, dy);
-    const double begin = mark_radius / length;
-    const double end = 1.0 - 0.5 * label_height / length;
+    const double begin = mark_radius / std::hypot(dx, dy);
+    // How far from its middle the label's box is left, as a share of the way.
+    const double end =
+        1.0 - std::min({1.0 - begin, 0.5 * point.width / std::max(std::abs(dx), 1e-9),
+                        0.5 * point.height / std::max(std::abs(dy), 1e-9)});
     out_ << "set arrow from screen " << (point.x + begin * dx) / chart_width << ','
          << (point.y + begin * dy) / chart_height_ << " to screen "
          << (point.x + end * dx) / chart_width << ',' << (point.y + end * dy) / chart_height_

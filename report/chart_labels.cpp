@@ -13,6 +13,8 @@ constexpr double ring_step_px = 6.0;  // between the circles of places that are 
 constexpr int rings = 9;
 constexpr int directions = 16;
 constexpr double leader_from_px = 15.0;
+constexpr double most_covered = 0.2;                             // of a legible label
+constexpr double weight_outside = 10.0, weight_of_label = 10.0;  // beside other things covered
 
 ChartBox box_at(double x, double y, const LabelRequest& request) {
   return {x - 0.5 * request.width, y - 0.5 * request.height, x + 0.5 * request.width,
@@ -30,9 +32,10 @@ double ChartBox::overlap(const ChartBox& other) const {
 std::vector<PlacedLabel> place_labels(const std::vector<LabelRequest>& requests,
                                       const std::vector<ChartBox>& obstacles,
                                       const ChartBox& frame) {
-  std::vector<ChartBox> taken = obstacles;
+  std::vector<ChartBox> taken;  // by legible labels
   std::vector<PlacedLabel> placed;
   for (const LabelRequest& request : requests) {
+    const double area = request.width * request.height;
     PlacedLabel best;
     double least = std::numeric_limits<double>::infinity();
     for (int ring = 0; ring < rings && least > 0.0; ++ring) {
@@ -41,22 +44,63 @@ std::vector<PlacedLabel> place_labels(const std::vector<LabelRequest>& requests,
         // Straight up first, then alternately to both sides.
         const int turn = (direction + 1) / 2 * (direction % 2 == 0 ? 1 : -1);
         const double angle = std::numbers::pi * (0.5 + 2.0 * turn / directions);
-        const double x = request.x + radius * std::cos(angle);
+        // Wide labels stand off by their own width, or they would cover what they name.
+        const double x =
+            request.x +
+            (radius + 0.5 * std::max(0.0, request.width - 2.0 * nearest_px)) * std::cos(angle);
         const double y = request.y + radius * std::sin(angle);
         const ChartBox box = box_at(x, y, request);
-        const double outside = request.width * request.height - box.overlap(frame);
-        double covered = 10.0 * std::max(0.0, outside - 1e-9);
-        for (const ChartBox& other : taken) covered += box.overlap(other);
-        if (covered < least) {
-          least = covered;
-          best = {x, y, radius > leader_from_px};
+        const double outside = std::max(0.0, area - box.overlap(frame) - 1e-9);
+        double on_labels = 0.0;
+        for (const ChartBox& other : taken) on_labels += box.overlap(other);
+        double covered = 0.0;
+        for (const ChartBox& other : obstacles) covered += box.overlap(other);
+        const double cost = covered + weight_outside * outside + weight_of_label * on_labels;
+        if (cost < least) {
+          least = cost;
+          best = {x, y, radius > leader_from_px,
+                  outside == 0.0 && on_labels == 0.0 && covered <= most_covered * area};
         }
       }
     }
-    taken.push_back(box_at(best.x, best.y, request));
+    if (best.is_legible) taken.push_back(box_at(best.x, best.y, request));
     placed.push_back(best);
   }
   return placed;
+}
+
+std::vector<PointGroup> group_points(const std::vector<NumberedPoint>& points, double reach) {
+  std::vector<PointGroup> groups;
+  std::vector<NumberedPoint> firsts;
+  for (const NumberedPoint& point : points) {
+    const auto first = std::ranges::find_if(firsts, [&](const NumberedPoint& other) {
+      return std::abs(other.x - point.x) <= reach && std::abs(other.y - point.y) <= reach;
+    });
+    if (first == firsts.end()) {
+      firsts.push_back(point);
+      groups.push_back({point.x, point.y, {point.number}});
+      continue;
+    }
+    PointGroup& group = groups[static_cast<std::size_t>(first - firsts.begin())];
+    const auto count = static_cast<double>(group.numbers.size());
+    group.x = (count * group.x + point.x) / (count + 1.0);
+    group.y = (count * group.y + point.y) / (count + 1.0);
+    group.numbers.push_back(point.number);
+  }
+  return groups;
+}
+
+std::string number_list(std::vector<std::size_t> numbers) {
+  std::ranges::sort(numbers);
+  std::string list;
+  for (std::size_t i = 0; i < numbers.size();) {
+    std::size_t end = i + 1;
+    while (end < numbers.size() && numbers[end] == numbers[end - 1] + 1) ++end;
+    list += (list.empty() ? "" : ", ") + std::to_string(numbers[i]);
+    if (end - i > 1) list += (end - i == 2 ? ", " : "–") + std::to_string(numbers[end - 1]);
+    i = end;
+  }
+  return list;
 }
 
 }  // namespace vislab

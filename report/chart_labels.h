@@ -1,6 +1,7 @@
 // Places small labels beside points so that they hide neither points nor each other.
 #pragma once
 
+#include <string>
 #include <vector>
 
 namespace vislab {
@@ -15,6 +16,8 @@ struct ChartBox {
 struct PlacedLabel {
   double x = 0.0, y = 0.0;  // centre of the label
   bool leader = false;      // so far from its point that a line should join them
+  /// False: there was no place where it hides next to nothing, and should be left out.
+  bool is_legible = true;
 };
 
 struct LabelRequest {
@@ -24,9 +27,28 @@ struct LabelRequest {
 
 /// One label a request, inside `frame` and off the `obstacles` (marks, error bars) where that can
 /// be done. Greedy in the order of requests; each takes the free place nearest to its point, else
-/// the least covered one. O(requests × (requests + obstacles)).
+/// the least covered one. Legible labels never overlap each other.
+/// O(requests × (requests + obstacles)).
 std::vector<PlacedLabel> place_labels(const std::vector<LabelRequest>& requests,
                                       const std::vector<ChartBox>& obstacles,
                                       const ChartBox& frame);
+
+struct NumberedPoint {
+  double x = 0.0, y = 0.0;
+  std::size_t number = 0;
+};
+
+/// Points that lie so near each other that they share a label.
+struct PointGroup {
+  double x = 0.0, y = 0.0;  // the mean of the points
+  std::vector<std::size_t> numbers;
+};
+
+/// Each point joins the first group whose first point is at most `reach` away in x and in y, or
+/// begins one, in the order of the points.
+std::vector<PointGroup> group_points(const std::vector<NumberedPoint>& points, double reach);
+
+/// "3, 5–8": the numbers in ascending order.
+std::string number_list(std::vector<std::size_t> numbers);
 
 }  // namespace vislab

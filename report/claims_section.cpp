@@ -1,7 +1,9 @@
 #include "report/claims_section.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "report/format.h"
 
@@ -80,7 +82,8 @@ std::string verdict_text(ClaimVerdict verdict) {
   return is_told ? "**" + text + "**" : text;
 }
 
-Fields row_fields(const PublishedRow& row, const OwnFigure& own) {
+/// What every claim has, measured or not.
+Fields claim_fields(const PublishedRow& row) {
   Fields fields;
   fields.values["what"] = markdown_text(row.what);
   fields.values["table"] = markdown_text(row.table);
@@ -88,12 +91,18 @@ Fields row_fields(const PublishedRow& row, const OwnFigure& own) {
       row.published.empty() ? format_number(row.ratio()) + " (" + format_number(row.without_fps) +
                                   " → " + format_number(row.with_fps) + " frames a second)"
                             : markdown_text(row.published);
+  return fields;
+}
+
+Fields untold_fields(const PublishedRow& row) {
+  Fields fields = claim_fields(row);
+  fields.values["reason"] = markdown_text(row.cannot_be_told);
+  return fields;
+}
+
+Fields row_fields(const PublishedRow& row, const OwnFigure& own) {
+  Fields fields = claim_fields(row);
   fields.values["verdict"] = verdict_text(verdict_of(row, own));
-  if (!row.cannot_be_told.empty()) {
-    fields.values["accept"] = fields.values["own"] = fields.values["method"] = "–";
-    fields.values["scene"] = markdown_text(row.cannot_be_told);
-    return fields;
-  }
   fields.values["accept"] = accept_text(row);
   fields.values["own"] = own_text(row, own);
   fields.values["scene"] = markdown_text(place_of(row, own));
@@ -118,18 +127,31 @@ void add_counts(const Counts& counts, const std::string& prefix, Fields& fields)
 void add_claim_fields(const ReportInput& input, Fields& fields) {
   Counts all{};
   std::size_t claims = 0;
+  bool any = false;
   auto& sources = fields.lists["claim_sources"];
-  auto& unmeasured = fields.lists["unmeasured_sources"];
+  auto& measured = fields.lists["measured_sources"];
+  auto& untold = fields.lists["untold_claims"];
   for (const PublishedFigures& figures : input.published) {
     Counts counts{};
     Fields entry;
-    bool any = false;
+    auto& rows = entry.lists["rows"];
+    std::vector<Fields> not_run;
     for (const PublishedRow& row : figures.rows) {
       const OwnFigure own = own_figure(row, input.blocks);
       any |= own.cell != nullptr;
-      ++counts[static_cast<std::size_t>(verdict_of(row, own))];
-      entry.lists["rows"].push_back(row_fields(row, own));
+      const ClaimVerdict verdict = verdict_of(row, own);
+      ++counts[static_cast<std::size_t>(verdict)];
+      if (!row.cannot_be_told.empty()) {
+        untold.push_back(untold_fields(row));
+      } else {
+        (verdict == ClaimVerdict::not_run ? not_run : rows).push_back(row_fields(row, own));
+      }
     }
+    // Where most were run, what is missing is a gap, and stands in the table.
+    const bool is_folded = not_run.size() > rows.size();
+    if (!is_folded) std::ranges::move(not_run, std::back_inserter(rows));
+    entry.flag("is_folded", is_folded);
+    const bool has_rows = !rows.empty();
     for (std::size_t i = 0; i < counts.size(); ++i) all[i] += counts[i];
     claims += figures.rows.size();
     entry.values["title"] = markdown_text(figures.title);
@@ -137,10 +159,11 @@ void add_claim_fields(const ReportInput& input, Fields& fields) {
     entry.values["note"] = markdown_text(figures.note);
     entry.values["count"] = std::to_string(figures.rows.size());
     add_counts(counts, "", entry);
-    (any ? sources : unmeasured).push_back(std::move(entry));
+    if (has_rows) measured.push_back(entry);
+    sources.push_back(std::move(entry));
   }
-  fields.flag("has_claims", !sources.empty());
-  fields.flag("has_unmeasured_sources", !unmeasured.empty());
+  fields.flag("has_untold_claims", !untold.empty());
+  fields.flag("has_claims", any);
   fields.values["claim_count"] = std::to_string(claims);
   add_counts(all, "claims_", fields);
 }

@@ -6,8 +6,9 @@
 
 namespace vislab {
 
-/// Adds what templates/claims.md asks for, and the counts that the summary does. A source of which
-/// nothing was measured is named without its rows; without any the section is left out.
+/// Adds what templates/claims.md asks for, and the counts that the summary does. Of a source of
+/// which most claims were not run these are counted only; else they stand in the table as gaps.
+/// Where no claim of any source was measured, the section is left out.
 void add_claim_fields(const ReportInput& input, Fields& fields);
 
 }  // namespace vislab

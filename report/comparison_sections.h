@@ -1,6 +1,7 @@
 // The report's sections that put methods beside each other across scenes.
 #pragma once
 
+#include <filesystem>
 #include <vector>
 
 #include "report/report.h"
@@ -11,9 +12,10 @@ namespace vislab {
 /// One entry for each kind of culling with enough methods, for templates/chains.md.
 std::vector<Fields> guide_fields(const std::vector<BlockSummary>& blocks);
 
-/// One entry for each block with methods that paint an image themselves, for templates/surfaces.md.
-/// Pictures go into `folder`.
-std::vector<Fields> surface_fields(const ReportInput& input, const std::filesystem::path& folder);
+/// Methods that paint an image themselves, for templates/families/surface/images.md. Pictures of
+/// the most telling scenes go into `folder`.
+void add_surface_fields(const ReportInput& input, const std::filesystem::path& folder,
+                        Fields& fields);
 
 /// One entry for each machine and figure of the table of costs, for templates/measurement.md.
 std::vector<Fields> cost_fields(const std::vector<BlockSummary>& blocks);

@@ -1,11 +1,10 @@
 #include "report/depth_section.h"
 
 #include <algorithm>
-#include <set>
-#include <tuple>
 
 #include "common/scene/error.h"
 #include "report/format.h"
+#include "report/scene_section.h"
 
 namespace vislab {
 namespace {
@@ -32,18 +31,11 @@ void add_depth_fields(const ReportInput& input, const std::vector<const BlockSum
                       const std::filesystem::path& folder, Fields& fields) {
   auto& rows = fields.lists["depths"];
   auto& pictures = fields.lists["depth_pictures"];
-  std::set<std::tuple<std::string, std::string, int, int>> known;
   const BlockSummary* deepest = nullptr;
   double greatest = 0.0;
-  for (const BlockSummary& block : input.blocks) {
+  for (const ShownScene& scene : shown_scenes(input.blocks, left_out)) {
     if (!input.depth_complexity) break;
-    if (std::ranges::count(left_out, &block) > 0) continue;
-    if (!known
-             .emplace(block.scene_hash, block.path_hash, block.viewport.width,
-                      block.viewport.height)
-             .second) {
-      continue;
-    }
+    const BlockSummary& block = input.blocks[scene.block];
     try {
       const DepthComplexityTable table = input.depth_complexity(block, {});
       rows.push_back(row_of(block, table));

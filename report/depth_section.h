@@ -8,7 +8,8 @@
 
 namespace vislab {
 
-/// Adds the fields of templates/depth.md: a row for each scene and path of the run, and a heat map,
+/// Adds the fields of templates/depth.md: a row for each scene, on the path that is
+/// shown of it, and a heat map,
 /// written into `folder`, of the one with the greatest mean by rays. Blocks in `left_out` and
 /// scenes that are no longer what was measured are left out; without any, the section says so.
 void add_depth_fields(const ReportInput& input, const std::vector<const BlockSummary*>& left_out,

@@ -1,6 +1,7 @@
 #include "report/family_section.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -14,7 +15,6 @@ namespace vislab {
 namespace {
 
 constexpr std::size_t charts_a_family = 2;
-constexpr std::size_t fewest_points = 2;
 
 std::string family_of_stage(const std::string& name, const Registry* cullers) {
   if (cullers != nullptr) {
@@ -126,6 +126,25 @@ std::string break_of(const Sweep& sweep, const SweepVerdict& verdict) {
                      markdown_text(sweep.dial.texts[*verdict.break_point] + unit);
   if (verdict.agreement == SweepVerdict::Agreement::differs) text += " (not as expected)";
   return text;
+}
+
+/// "`vislab run a b` measures its break points": the sweeps with a method of the family of which
+/// nothing is in the results.
+std::string sweeps_not_run(const ReportInput& input, const std::string& family) {
+  std::string names;
+  for (const SweepResult& result : input.sweeps) {
+    if (result.was_measured()) continue;
+    if (std::ranges::none_of(result.sweep.methods, [&](const SweepMethod& method) {
+          return family_of_stage(last_name(method.culler), input.cullers) == family;
+        })) {
+      continue;
+    }
+    names += (names.empty() ? "" : " ") + result.sweep.name;
+  }
+  if (names.empty()) return {};
+  return "Stress sweeps with methods of this family that are not in the results: " +
+         markdown_code("vislab run " + names) + " measures them, " +
+         markdown_code("vislab run stress") + " all sweeps of all families.";
 }
 
 /// One row for each sweep that a method of the family took part in.
@@ -258,6 +277,9 @@ Fields chapter_fields(const ReportInput& input, const std::vector<const BlockSum
   fields.values["saving"] = saving_sentence(input.blocks, on);
   fields.lists["family_breaks"] = break_rows(input, family);
   fields.flag("has_family_breaks", !fields.lists["family_breaks"].empty());
+  fields.values["sweeps_not_run"] = sweeps_not_run(input, family);
+  fields.flag("has_sweeps_of_family",
+              !fields.lists["family_breaks"].empty() || !fields.values["sweeps_not_run"].empty());
   add_pictures(input, charted, on, family, work, fields);
   return fields;
 }
@@ -269,9 +291,28 @@ std::string family_of(const CellSummary& cell, const Registry* cullers) {
   return chain.empty() ? "" : family_of_stage(chain.back().name, cullers);
 }
 
+FamilyTexts family_texts(const std::filesystem::path& templates, const Fields& fields) {
+  std::set<std::filesystem::path> files;
+  for (const auto& family : std::filesystem::directory_iterator(templates)) {
+    if (!family.is_directory()) continue;
+    for (const auto& file : std::filesystem::directory_iterator(family.path())) {
+      if (file.path().extension() == ".md") files.insert(file.path());
+    }
+  }
+  FamilyTexts texts;
+  for (const std::filesystem::path& file : files) {
+    const std::string text = fill_template(read_template(file), fields, file.string());
+    if (text.find_first_not_of(" \n") == std::string::npos) continue;
+    texts[file.parent_path().filename().string()] += text + "\n";
+  }
+  return texts;
+}
+
 std::vector<std::string> measured_families(const ReportInput& input,
-                                           const std::vector<std::string>& order) {
+                                           const std::vector<std::string>& order,
+                                           const FamilyTexts& texts) {
   std::set<std::string> found;
+  for (const auto& [family, text] : texts) found.insert(family);
   for (const std::vector<BlockSummary>* blocks : {&input.blocks, &input.sweep_blocks}) {
     for (const BlockSummary& block : *blocks) {
       for (const CellSummary& cell : block.cells) {
@@ -295,19 +336,24 @@ std::vector<FamilyChart> family_charts(const ReportInput& input,
                                        const std::vector<std::string>& families) {
   std::vector<FamilyChart> charts;
   for (const std::string& family : families) {
-    std::vector<std::pair<std::size_t, const BlockSummary*>> scored;
+    using Score = std::pair<std::size_t, double>;  // points, and how much the family saves at best
+    std::vector<std::pair<Score, const BlockSummary*>> scored;
     for (const BlockSummary& block : input.blocks) {
       if (is_in(in_diagrams, block)) continue;
       std::vector<const CellSummary*> cells;
       for (const CellSummary* cell : charted_cells(block)) {
         if (!cell->anchor && family_of(*cell, input.cullers) == family) cells.push_back(cell);
       }
-      if (cells.size() < fewest_points) continue;
+      if (cells.empty()) continue;
       std::set<std::size_t> on_curves;
       for (const DialCurve& curve : dial_curves(cells)) {
         on_curves.insert(curve.cells.begin(), curve.cells.end());
       }
-      scored.emplace_back(cells.size() + on_curves.size(), &block);
+      const FamilyOn on = family_on(block, family, input.cullers);
+      const double saving = on.best == nullptr || !on.best->against_none.measured()
+                                ? -std::numeric_limits<double>::infinity()
+                                : -on.best->against_none.value;
+      scored.emplace_back(Score(cells.size() + on_curves.size(), saving), &block);
     }
     std::ranges::stable_sort(scored, std::greater<>{},
                              [](const auto& entry) { return entry.first; });
@@ -334,13 +380,15 @@ std::string family_chart_script(const std::vector<FamilyChart>& charts, const Re
 void add_family_fields(const ReportInput& input,
                        const std::vector<const BlockSummary*>& in_diagrams,
                        const std::vector<FamilyChart>& charts,
-                       const std::vector<std::string>& families,
+                       const std::vector<std::string>& families, const FamilyTexts& texts,
                        const std::filesystem::path& templates, const std::filesystem::path& work,
                        Fields& fields) {
   auto& chapters = fields.lists["families"];
   const std::filesystem::path measured = templates / "measured.md";
   for (const std::string& family : families) {
     Fields chapter = chapter_fields(input, in_diagrams, charts, family, work);
+    const auto text = texts.find(family);
+    chapter.values["sections"] = text == texts.end() ? "" : text->second;
     chapter.values["measurements"] =
         fill_template(read_template(measured), chapter, measured.string());
     std::filesystem::path file = templates / (family + ".md");

@@ -16,7 +16,7 @@ namespace {
 using occlusion_culling::Persistence;
 
 bool builds_on_the_past(const CellSummary& cell) {
-  return cell.canonical.find("occlusion.chc") != std::string::npos;
+  return cell.asks_device && cell.repeatability == Repeatability::path;
 }
 
 /// The time at which the counted share is farthest from the formula, from 1; 0 if nothing was

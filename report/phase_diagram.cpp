@@ -19,7 +19,6 @@ constexpr double panel_left = 112.0, panel_right = 672.0;
 constexpr double row_height = 46.0, axis_height = 50.0, top_margin = 10.0;
 constexpr double y_title_left = 12.0;
 constexpr double decided_lead = 1.01;
-constexpr const char* baseline = "frustum.bvh";
 
 /// As it was given: "0", "2.5", "1000".
 std::string plain(double value) {
@@ -64,7 +63,10 @@ std::string family_of(const std::string& scene) {
   return family;
 }
 
-bool is_baseline(const CellSummary& cell) { return cell.culler == baseline; }
+bool culls_by_frustum(const CellSummary& cell) {
+  return cell.culls == Culls::outside_frustum && !cell.asks_device &&
+         cell.canonical.find(" > ") == std::string::npos;
+}
 
 std::optional<PhaseCell> cell_of(const BlockSummary& block) {
   std::vector<const CellSummary*> cells = phase_contestants(block);
@@ -76,9 +78,9 @@ std::optional<PhaseCell> cell_of(const BlockSummary& block) {
   result.next = cells[1]->culler;
   result.lead = time(cells[1]) / time(cells[0]);
   result.decided = result.lead >= decided_lead;
-  const auto bvh =
-      std::ranges::find_if(cells, [](const CellSummary* cell) { return is_baseline(*cell); });
-  if (bvh != cells.end()) result.over_bvh = time(*bvh) / time(cells[0]);
+  const auto baseline =
+      std::ranges::find_if(cells, [](const CellSummary* cell) { return culls_by_frustum(*cell); });
+  if (baseline != cells.end()) result.over_frustum = time(*baseline) / time(cells[0]);
   return result;
 }
 
@@ -140,9 +142,7 @@ std::vector<Group> groups_of(const std::vector<BlockSummary>& blocks) {
 }
 
 bool may_take_part(const CellSummary& cell) {
-  const bool by_frustum =
-      cell.culler.starts_with("frustum.") && cell.culler.find(" > ") == std::string::npos;
-  return !cell.anchor && (cell.asks_device || by_frustum) &&
+  return !cell.anchor && (cell.asks_device || culls_by_frustum(cell)) &&
          cell.guarantee <= Guarantee::image_exact;
 }
 
@@ -278,7 +278,7 @@ class PhaseWriter {
     rectangle(x, y, x + 1.0, y + 1.0, light_colour(method_look(winner).colour));
     text(x + 0.5, y + 0.74, phase_letter(winner) + (cell->decided ? "" : " (tie)"), ",13");
     text(x + 0.5, y + 0.28,
-         times(cell->lead) + (cell->over_bvh ? " | " + times(*cell->over_bvh) : ""), ",10");
+         times(cell->lead) + (cell->over_frustum ? " | " + times(*cell->over_frustum) : ""), ",10");
   }
 
   void write_legend() {

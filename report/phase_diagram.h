@@ -15,9 +15,9 @@ namespace vislab {
 /// A block's fastest method.
 struct PhaseCell {
   std::string winner, next;
-  double lead = 1.0;               // times as fast as the next best
-  std::optional<double> over_bvh;  // times as fast as frustum.bvh, if that was measured
-  bool decided = false;            // the lead is at least 1 %
+  double lead = 1.0;                   // times as fast as the next best
+  std::optional<double> over_frustum;  // times as fast as the best by the frustum alone, if any
+  bool decided = false;                // the lead is at least 1 %
 };
 
 struct PhaseRow {

@@ -55,20 +55,20 @@ Fields phase_fields(const PhaseDiagram& diagram, std::size_t index) {
   entry.values["file"] = phase_file_name(index);
   entry.values["wins"] = wins_of(diagram);
   double lead = 1.0;
-  double over_bvh = 0.0;
+  double over_frustum = 0.0;
   int ties = 0;
   for (const PhaseRow& row : diagram.rows) {
     for (const auto& cell : row.by_latency) {
       if (!cell) continue;
       lead = std::max(lead, cell->lead);
-      over_bvh = std::max(over_bvh, cell->over_bvh.value_or(0.0));
+      over_frustum = std::max(over_frustum, cell->over_frustum.value_or(0.0));
       ties += cell->decided ? 0 : 1;
     }
   }
   entry.values["lead"] = format_number(lead);
   entry.values["ties"] = std::to_string(ties);
-  entry.flag("has_bvh", over_bvh > 0.0);
-  entry.values["over_bvh"] = format_number(over_bvh);
+  entry.flag("has_over_frustum", over_frustum > 0.0);
+  entry.values["over_frustum"] = format_number(over_frustum);
   std::string shares;
   for (const PhaseRow& row : diagram.rows) {
     const bool on_several_paths = std::ranges::count(diagram.rows, row.scene, &PhaseRow::scene) > 1;

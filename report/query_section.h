@@ -8,7 +8,7 @@
 
 namespace vislab {
 
-/// Adds the fields of templates/queries.md: what each method that asks the device asked a frame,
+/// Adds the fields of templates/families/occlusion/queries.md: what each method that asks the device asked a frame,
 /// what was found before, and pictures of frames, written into `folder`. Blocks that a phase
 /// diagram speaks of have no rows of their own. Charts are expected under the names of
 /// query_findings.h. Without such a method the section is empty.

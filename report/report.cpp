@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <future>
 #include <map>
 #include <memory>
 #include <sstream>
@@ -21,9 +22,11 @@
 #include "report/main_chart.h"
 #include "report/method_fields.h"
 #include "report/model_size_section.h"
+#include "report/page.h"
 #include "report/persistence_section.h"
 #include "report/process.h"
 #include "report/query_section.h"
+#include "report/scene_section.h"
 #include "report/sections.h"
 #include "report/summary_section.h"
 #include "report/sweep_chart.h"
@@ -35,17 +38,15 @@ namespace {
 namespace fs = std::filesystem;
 
 const Program gnuplot{"gnuplot", "gnuplot-nox"};
-const Program pandoc{"pandoc", "pandoc"};
-const Program chromium{"chromium", "chromium"};
-constexpr std::chrono::seconds time_limit{60};
+constexpr std::chrono::seconds time_limit{600};
 constexpr const char* persistence_file = "persistence.json";
 
 /// The report's parts in their order; each is templates/NAME.md, and is left out where there is no
 /// such file.
-constexpr const char* parts[] = {"front",    "introduction", "floor",      "depth",   "persistence",
-                                 "families", "cells",        "surfaces",   "queries", "scenes",
-                                 "chains",   "model_size",   "sweeps",     "claims",  "errata",
-                                 "methods",  "metrics",      "measurement"};
+constexpr const char* parts[] = {"front",       "introduction", "floor",      "depth",
+                                 "persistence", "families",     "scenes",     "chains",
+                                 "model_size",  "sweeps",       "claims",     "errata",
+                                 "methods",     "metrics",      "measurement"};
 
 /// A folder for work in progress, gone with this object.
 class WorkFolder {
@@ -116,14 +117,13 @@ void draw_charts(const ReportInput& input, const QueryFindings& queries,
                  const std::vector<PersistenceRow>& persistence,
                  const std::vector<FamilyChart>& of_families, const fs::path& work) {
   std::string script = family_chart_script(of_families, input.cullers);
-  const std::vector<const BlockSummary*> in_diagrams = queries.diagram_blocks();
-  for (std::size_t i = 0; i < input.blocks.size(); ++i) {
-    if (std::ranges::count(in_diagrams, &input.blocks[i]) > 0) continue;
-    if (charted_cells(input.blocks[i]).empty()) continue;
-    script += chart_script(input.blocks[i], chart_file_name(i));
+  for (const ShownScene& scene : shown_scenes(input.blocks, queries.diagram_blocks())) {
+    const BlockSummary& block = input.blocks[scene.block];
+    if (charted_cells(block).empty()) continue;
+    script += chart_script(block, chart_file_name(scene.block));
   }
   for (std::size_t i = 0; i < input.sweeps.size(); ++i) {
-    if (!has_sweep_chart(input.sweeps[i])) continue;
+    if (!is_shown(input.sweeps[i]) || !has_sweep_chart(input.sweeps[i])) continue;
     script += sweep_chart_script(input.sweeps[i], sweep_chart_file_name(i));
   }
   if (!persistence.empty()) {
@@ -139,7 +139,6 @@ void draw_charts(const ReportInput& input, const QueryFindings& queries,
 
 void write_words(const ReportInput& input, const QueryFindings& queries,
                  const std::vector<PersistenceRow>& persistence,
-                 const std::vector<std::string>& families,
                  const std::vector<FamilyChart>& of_families, const fs::path& templates,
                  const fs::path& work) {
   const fs::path folder = templates / "templates";
@@ -154,8 +153,11 @@ void write_words(const ReportInput& input, const QueryFindings& queries,
   add_errata_fields(input, work, fields);
   add_summary_fields(input, fields);
   add_introduction_fields(input, queries.diagram_blocks(), work, fields);
-  add_family_fields(input, queries.diagram_blocks(), of_families, families, folder / "families",
-                    work, fields);
+  const FamilyTexts texts = family_texts(folder / "families", fields);
+  const std::vector<std::string> families =
+      measured_families(input, read_names(folder / "families" / "order.txt"), texts);
+  add_family_fields(input, queries.diagram_blocks(), of_families, families, texts,
+                    folder / "families", work, fields);
   cite_sources(read_template(templates / "bibliography.bib"), fields.lists["methods"]);
   std::string text;
   for (const std::string part : parts) {
@@ -166,40 +168,6 @@ void write_words(const ReportInput& input, const QueryFindings& queries,
   write_text(work / "report.md", text);
   const fs::path summary = folder / "summary.md";
   write_text(work / "summary.md", fill_template(read_template(summary), fields, summary.string()));
-}
-
-void make_page(const fs::path& templates, const fs::path& work) {
-  const fs::path absolute = fs::absolute(templates);
-  run_program(pandoc,
-              {"summary.md", "--from=markdown-implicit_header_references", "--to=html5",
-               "--columns=10000", "--output=summary.html"},
-              work, time_limit);
-  run_program(pandoc,
-              {"report.md", "--from=markdown-implicit_header_references", "--to=html5",
-               "--metadata-file=" + (absolute / "page.yaml").string(),
-               "--template=" + (absolute / "page.html").string(),
-               "--css=" + (absolute / "style.css").string(),
-               "--bibliography=" + (absolute / "bibliography.bib").string(),
-               "--csl=" + (absolute / "numbered.csl").string(), "--citeproc", "--mathml",
-               "--standalone", "--self-contained", "--toc", "--toc-depth=2", "--number-sections",
-               "--include-before-body=summary.html",
-               // Tables keep the widths that their content asks for.
-               "--columns=10000", "--output=index.html"},
-              work, time_limit);
-}
-
-void print_page(const fs::path& work) {
-  run_program(
-      chromium,
-      {"--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
-       "--disable-extensions", "--disable-background-networking",
-       "--user-data-dir=" + (work / "browser").string(), "--no-pdf-header-footer",
-       "--generate-pdf-document-outline", "--print-to-pdf=" + (work / "report.pdf").string(),
-       "file://" + (work / "index.html").string()},
-      work, time_limit);
-  if (!fs::exists(work / "report.pdf")) {
-    throw InputError("chromium ended without an error but printed no report.pdf");
-  }
 }
 
 /// Copies the files beside their final names before any is renamed.
@@ -239,15 +207,16 @@ void write_report(const ReportInput& given, const fs::path& template_folder,
   const WorkFolder work;
   const QueryFindings queries = find_queries(input);
   const std::vector<PersistenceRow> persistence = persistence_rows(input, queries.diagram_blocks());
-  const std::vector<std::string> families = measured_families(
-      input, read_names(template_folder / "templates" / "families" / "order.txt"));
   const std::vector<FamilyChart> of_families =
-      family_charts(input, queries.diagram_blocks(), families);
-  draw_charts(input, queries, persistence, of_families, work.path());
-  write_words(input, queries, persistence, families, of_families, template_folder, work.path());
+      family_charts(input, queries.diagram_blocks(), measured_families(input, {}, {}));
+  // gnuplot draws the charts while the pictures are painted here.
+  std::future<void> charts = std::async(std::launch::async, [&] {
+    draw_charts(input, queries, persistence, of_families, work.path());
+  });
+  write_words(input, queries, persistence, of_families, template_folder, work.path());
   if (!persistence.empty()) write_text(work.path() / persistence_file, to_json(persistence));
+  charts.get();
   make_page(template_folder, work.path());
-  print_page(work.path());
   publish(work.path(), folder);
 }
 

@@ -8,8 +8,8 @@
 
 #include "common/culler/registry.h"
 #include "experiments/analysis/break_points.h"
-#include "experiments/analysis/knees.h"
 #include "experiments/analysis/errata.h"
+#include "experiments/analysis/knees.h"
 #include "experiments/analysis/persistence.h"
 #include "experiments/analysis/published.h"
 #include "experiments/analysis/summary.h"

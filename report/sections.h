@@ -15,6 +15,12 @@ Fields report_fields(const ReportInput& input, const std::string& verdict_templa
                      const std::vector<const BlockSummary*>& in_diagrams,
                      const std::filesystem::path& folder);
 
+/// The scene's name, with path, resolution and device where several blocks share it.
+std::string title_of(const std::vector<BlockSummary>& blocks, const BlockSummary& block);
+
+/// "5", or "3–5" where cells differ.
+std::string rounds_of(const BlockSummary& block);
+
 /// Name of the chart of the block with that index: "chart-1.svg".
 std::string chart_file_name(std::size_t block);
 

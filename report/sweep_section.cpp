@@ -94,17 +94,50 @@ Fields method_row(const Sweep& sweep, const SweepVerdict& verdict) {
   return row;
 }
 
+/// Did anything break, come out unlike predicted, or is something missing?
+bool has_news(const SweepResult& result) {
+  return std::ranges::any_of(result.verdicts, [](const SweepVerdict& verdict) {
+    return verdict.break_point || verdict.broken_promise || !verdict.is_complete ||
+           !verdict.missing_counter.empty() ||
+           verdict.agreement == SweepVerdict::Agreement::differs;
+  });
+}
+
+Fields quiet_row(const SweepResult& result) {
+  Fields row;
+  row.values["failure"] = markdown_text(result.sweep.failure);
+  row.values["sweep"] = markdown_text(result.sweep.name);
+  row.values["description"] = markdown_text(result.sweep.description);
+  const SweepDial& dial = result.sweep.dial;
+  row.values["dial"] = markdown_text(dial.name) + " from " + in_unit(dial, 0) + " to " +
+                       in_unit(dial, dial.texts.size() - 1);
+  row.values["limit"] = limit_text(result.sweep);
+  std::string methods;
+  for (const SweepVerdict& verdict : result.verdicts) {
+    methods += (methods.empty() ? "" : "; ") + markdown_code(verdict.culler);
+  }
+  row.values["methods"] = methods;
+  return row;
+}
+
 }  // namespace
 
 std::string sweep_chart_file_name(std::size_t sweep) {
   return "sweep-" + std::to_string(sweep + 1) + ".svg";
 }
 
-std::vector<Fields> sweep_fields(const std::vector<SweepResult>& sweeps) {
-  std::vector<Fields> entries;
+bool is_shown(const SweepResult& sweep) { return sweep.was_measured() && has_news(sweep); }
+
+void add_sweep_fields(const std::vector<SweepResult>& sweeps, Fields& fields) {
+  auto& entries = fields.lists["sweeps"];
+  auto& quiet = fields.lists["quiet_sweeps"];
   for (std::size_t i = 0; i < sweeps.size(); ++i) {
     const SweepResult& result = sweeps[i];
     if (!result.was_measured()) continue;
+    if (!is_shown(result)) {
+      quiet.push_back(quiet_row(result));
+      continue;
+    }
     Fields entry;
     entry.values["failure"] = markdown_text(result.sweep.failure);
     entry.values["sweep"] = markdown_text(result.sweep.name);
@@ -118,7 +151,8 @@ std::vector<Fields> sweep_fields(const std::vector<SweepResult>& sweeps) {
     }
     entries.push_back(std::move(entry));
   }
-  return entries;
+  fields.flag("has_sweeps", !entries.empty() || !quiet.empty());
+  fields.flag("has_quiet_sweeps", !quiet.empty());
 }
 
 }  // namespace vislab

@@ -9,9 +9,13 @@
 
 namespace vislab {
 
-/// One entry for each sweep that was measured, for templates/sweeps.md. Charts are expected under
-/// sweep_chart_file_name().
-std::vector<Fields> sweep_fields(const std::vector<SweepResult>& sweeps);
+/// For templates/sweeps.md: an entry for each sweep that was measured and in which something broke,
+/// came out unlike predicted or is missing, and a row for each of the others. Charts are expected
+/// under sweep_chart_file_name().
+void add_sweep_fields(const std::vector<SweepResult>& sweeps, Fields& fields);
+
+/// Has the sweep an entry, with a chart?
+bool is_shown(const SweepResult& sweep);
 
 /// Name of the chart of the sweep with that index: "sweep-1.svg".
 std::string sweep_chart_file_name(std::size_t sweep);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "common/culler/cell_walker.h"
 #include "common/geometry/frustum.h"
 #include "common/scene/error.h"
 #include "common/scene/transform.h"
@@ -12,8 +13,6 @@
 namespace vislab {
 namespace {
 
-constexpr const char* portal_method = "portal.polygon";
-constexpr const char* detail_method = "detail.screen_size";
 constexpr double least_threshold_px = 4.0;
 constexpr double largest_detail = 0.05;  // of the image
 constexpr std::size_t frames_looked_at = 24;
@@ -34,12 +33,24 @@ bool faces_away(const Camera& camera, const std::array<glm::dvec3, 3>& corners, 
   return glm::dot(normal, to_eye) < 0.0;
 }
 
-std::unique_ptr<ICuller> built(const Registry& cullers, const std::string& chain,
-                               const Scene& scene) {
-  std::unique_ptr<ICuller> culler = cullers.make(chain);
-  culler->build(scene, BuildContext{});
-  culler->reset(1);
-  return culler;
+/// One that decides about objects by itself.
+bool stands_alone(const CullerInfo& info) {
+  return info.granularity == Granularity::object && !info.needs_device && !info.needs_truth;
+}
+
+/// The method's parameter that is a number of pixels; null if it has none.
+const ParameterSpec* pixel_threshold(const CullerInfo& info) {
+  const auto found = std::ranges::find_if(info.parameters, [](const ParameterSpec& parameter) {
+    const bool is_number = parameter.type == ParameterSpec::Type::integer ||
+                           parameter.type == ParameterSpec::Type::real;
+    return is_number && (parameter.unit == "px" || parameter.unit == "pixels");
+  });
+  return found == info.parameters.end() ? nullptr : &*found;
+}
+
+void prepare(ICuller& culler, const Scene& scene) {
+  culler.build(scene, BuildContext{});
+  culler.reset(1);
 }
 
 std::size_t kinds_in(const FrameKinds& found) {
@@ -71,17 +82,28 @@ std::array<std::string, culling_kind_count> notes_of(const FrameKinds& found) {
 
 KindFinder::KindFinder(const Scene& scene, const Viewport& viewport, const Registry& cullers)
     : scene_(&scene) {
-  if (!scene.cells.empty()) portal_ = built(cullers, portal_method, scene);
   const double most = largest_detail * viewport.width * viewport.height;
-  for (double px = least_threshold_px; px <= most; px *= 4.0) {
-    const std::string chain =
-        std::string(detail_method) + "[threshold_px=" + std::to_string(static_cast<int>(px)) + "]";
-    detail_.push_back({px, built(cullers, chain, scene)});
+  for (const auto& [name, entry] : cullers.entries()) {
+    if (!stands_alone(entry.info)) continue;
+    if (entry.info.guarantee == Guarantee::conservative && !scene.cells.empty()) {
+      std::unique_ptr<ICuller> culler = cullers.make(name);
+      if (dynamic_cast<const CellWalker*>(culler.get()) == nullptr) continue;
+      prepare(*culler, scene);
+      walkers_.push_back(std::move(culler));
+    }
+    const ParameterSpec* const threshold = pixel_threshold(entry.info);
+    if (entry.info.guarantee != Guarantee::approximate || threshold == nullptr) continue;
+    if (!detail_.empty()) continue;
+    for (double px = least_threshold_px; px <= most; px *= 4.0) {
+      const std::string value = std::to_string(static_cast<int>(px));
+      detail_.push_back({px, cullers.make(name + "[" + threshold->name + "=" + value + "]")});
+      prepare(*detail_.back().culler, scene);
+    }
   }
 }
 
 void KindFinder::update(const Frame& frame, const Changes& changes) {
-  if (portal_) portal_->update(frame, changes);
+  for (const auto& walker : walkers_) walker->update(frame, changes);
   for (const DetailCuller& detail : detail_) detail.culler->update(frame, changes);
 }
 
@@ -90,14 +112,15 @@ FrameKinds KindFinder::find(const Frame& frame, const FrameTruth& truth) {
   found.kinds.assign(scene_->triangle_count(), CullingKind::drawn);
   std::vector<std::uint8_t> is_visible(scene_->triangle_count(), 0);
   for (const TriangleId id : truth.visible()) is_visible[id] = 1;
-  std::optional<VisibleSet> reached;
-  if (portal_) reached = kept_by(*portal_, frame);
+  std::vector<VisibleSet> reached;
+  for (const auto& walker : walkers_) reached.push_back(kept_by(*walker, frame));
   const Frustum frustum = frustum_of(frame.camera);
   for (const ObjectId object : frame.objects.shown) {
     const Mesh& mesh = scene_->mesh_of(object);
     const glm::dmat4x3& transform = frame.objects.transforms[object];
     const bool mirrored = determinant(transform) < 0.0;
-    const bool unreached = reached && !keeps_object(*reached, object);
+    const bool unreached = std::ranges::any_of(
+        reached, [&](const VisibleSet& kept) { return !keeps_object(kept, object); });
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
       const TriangleId id = scene_->first_triangle(object) + i;
       if (is_visible[id] != 0) continue;

@@ -20,9 +20,11 @@ struct FrameKinds {
 };
 
 /// Says of each triangle which kind leaves it out: the first of these that does. It lies outside a
-/// plane of the frustum; the walk through cells and portals does not reach it; it faces away, on a
-/// solid mesh; truth does not see it; or its object is no larger in the image than the least
-/// threshold, of 4, 16, 64 … pixels up to a twentieth of the image, at which anything visible is.
+/// plane of the frustum; a walk through cells and portals does not reach it, of any conservative
+/// method that walks; it faces away, on a solid mesh; truth does not see it; or its object is no
+/// larger in the image than the least threshold, of 4, 16, 64 … pixels up to a twentieth of the
+/// image, at which anything visible is: by the first approximate method, by name, that has a
+/// threshold in pixels.
 class KindFinder {
  public:
   /// Builds the cullers that it asks. Scene and registry outlive it.
@@ -43,8 +45,8 @@ class KindFinder {
   void add_detail(const Frame& frame, FrameKinds& found);
 
   const Scene* scene_;
-  std::unique_ptr<ICuller> portal_;   // null for a scene without cells
-  std::vector<DetailCuller> detail_;  // by ascending threshold
+  std::vector<std::unique_ptr<ICuller>> walkers_;  // none for a scene without cells
+  std::vector<DetailCuller> detail_;               // by ascending threshold
 };
 
 struct KindsPicture {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "common/scene/library.h"
 #include "experiments/analysis/summary.h"
@@ -15,8 +16,8 @@ struct StoredScene {
   Path path;
 };
 
-/// Loads what the cells of blocks were measured on; keeps the last one, because pictures of the
-/// same block come one after the other.
+/// Loads what the cells of blocks were measured on, and keeps what was asked for last, because
+/// many pictures are of the same scenes: up to a few million triangles together.
 class StoredScenes {
  public:
   StoredScenes(std::filesystem::path results, DataFolders folders);
@@ -26,9 +27,16 @@ class StoredScenes {
   const StoredScene& of(const BlockSummary& block, const std::string& cell_id);
 
  private:
+  struct Kept {
+    StoredScene stored;
+    std::string path_hash, default_path;
+  };
+
+  void load_path_of(Kept& kept, const BlockSummary& block, const std::string& source) const;
+
   std::filesystem::path results_;
   DataFolders folders_;
-  std::unique_ptr<StoredScene> loaded_;
+  std::vector<std::unique_ptr<Kept>> kept_;  // the last that was asked for in front
 };
 
 }  // namespace vislab

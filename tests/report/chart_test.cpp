@@ -66,6 +66,29 @@ TEST(Chart, LabelsStayInsideTheFrame) {
   EXPECT_LE(labels.front().y, 95.0);
 }
 
+TEST(Chart, LegibleLabelsNeverOverlapAlsoWhereThereIsNoRoomForAll) {
+  const std::vector<LabelRequest> requests(60, LabelRequest{50.0, 50.0, 12.0, 10.0});
+  std::vector<ChartBox> legible;
+  for (const PlacedLabel& label : place_labels(requests, {}, {0.0, 0.0, 100.0, 100.0})) {
+    if (!label.is_legible) continue;
+    const ChartBox box{label.x - 6.0, label.y - 5.0, label.x + 6.0, label.y + 5.0};
+    for (const ChartBox& other : legible) EXPECT_DOUBLE_EQ(box.overlap(other), 0.0);
+    legible.push_back(box);
+  }
+  EXPECT_GT(legible.size(), 10U);
+  EXPECT_LT(legible.size(), requests.size());
+}
+
+TEST(Chart, PointsThatLieTogetherShareTheirNumbers) {
+  const std::vector<PointGroup> groups =
+      group_points({{10.0, 10.0, 7}, {80.0, 10.0, 2}, {14.0, 12.0, 3}, {12.0, 8.0, 4}}, 5.0);
+  ASSERT_EQ(groups.size(), 2U);
+  EXPECT_EQ(number_list(groups[0].numbers), "3, 4, 7");
+  EXPECT_DOUBLE_EQ(groups[0].x, 12.0);
+  EXPECT_DOUBLE_EQ(groups[0].y, 10.0);
+  EXPECT_EQ(number_list({9, 1, 2, 3, 5}), "1–3, 5, 9");
+}
+
 TEST(Chart, TimesOfSeveralMachinesHaveNoAxis) {
   BlockSummary block = fabricated_block("made_up");
   EXPECT_TRUE(has_time_axis(block));

@@ -30,6 +30,25 @@ SweepResult fabricated_sweep() {
   });
 }
 
+std::vector<Fields> sweep_fields(const std::vector<SweepResult>& sweeps) {
+  Fields fields;
+  add_sweep_fields(sweeps, fields);
+  return fields.lists["sweeps"];
+}
+
+TEST(SweepSection, ASweepInWhichNothingBrokeHasARowOnly) {
+  SweepResult result = fabricated_sweep();
+  result.verdicts.pop_back();
+  Fields fields;
+  add_sweep_fields({result}, fields);
+  EXPECT_TRUE(fields.lists["sweeps"].empty());
+  ASSERT_EQ(fields.lists["quiet_sweeps"].size(), 1U);
+  EXPECT_EQ(fields.lists["quiet_sweeps"][0].values["dial"], "edge from 1 m to 8 m");
+  EXPECT_EQ(fields.lists["quiet_sweeps"][0].values["methods"], "`frustum.flat`");
+  result.verdicts[0].agreement = SweepVerdict::Agreement::differs;
+  EXPECT_TRUE(is_shown(result));
+}
+
 TEST(SweepSection, SaysWhereEachMethodBreaksAndWhatWasExpected) {
   const std::vector<Fields> fields = sweep_fields({fabricated_sweep()});
   ASSERT_EQ(fields.size(), 1U);

@@ -77,7 +77,10 @@ TEST(PersistenceSection, CountsEachSceneAndPathWithAMethodThatBuildsOnThePastOnc
   for (const char* scene : {"city", "city", "plain", "gone"}) {
     BlockSummary block = fabricated_block(scene);
     if (block.scene != "plain") {
-      block.cells.push_back(fabricated_cell("occlusion.chcpp[batch=20]", 0.5, 0, 0.1));
+      CellSummary remembers = fabricated_cell("occlusion.chcpp[batch=20]", 0.5, 0, 0.1);
+      remembers.asks_device = true;
+      remembers.repeatability = Repeatability::path;
+      block.cells.push_back(remembers);
     }
     input.blocks.push_back(block);
   }

@@ -24,6 +24,7 @@ BlockSummary modelled_block(const std::string& scene, const std::string& latency
   BlockSummary block = fabricated_block(scene);
   block.device = "modelled[preset=gpu,latency_us=" + latency + "]";
   block.cells.push_back(fabricated_cell("frustum.bvh", 0.5, 0, 4.0));
+  block.cells.back().culls = Culls::outside_frustum;
   block.cells.push_back(asking("occlusion.chcpp", 0.25, 40.0));
   block.cells.push_back(asking("occlusion.stop_and_wait", waiting, 400.0));
   return block;
@@ -51,7 +52,7 @@ TEST(PhaseDiagram, HasTheWinnerOfEachLatencyAndShare) {
   EXPECT_EQ(fast.winner, "occlusion.stop_and_wait");
   EXPECT_EQ(fast.next, "occlusion.chcpp");
   EXPECT_NEAR(fast.lead, 1.25, 1e-9);
-  EXPECT_NEAR(*fast.over_bvh, 2.5, 1e-9);
+  EXPECT_NEAR(*fast.over_frustum, 2.5, 1e-9);
   EXPECT_TRUE(fast.decided);
   EXPECT_EQ(diagram.rows[1].by_latency[1]->winner, "occlusion.chcpp");
   EXPECT_FALSE(diagram.rows[0].by_latency[0]->decided);

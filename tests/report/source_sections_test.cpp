@@ -146,22 +146,29 @@ TEST_F(SourceSections, EachClaimHasItsVerdictWithTheFigures) {
   EXPECT_EQ(rows[0].values.at("verdict"), "**confirmed**");
   EXPECT_EQ(rows[0].values.at("accept"), "3.00 to 5.00");
   EXPECT_TRUE(rows[0].values.at("own").starts_with("4.0")) << rows[0].values.at("own");
-  EXPECT_EQ(rows[1].values.at("verdict"), "cannot be told");
-  EXPECT_EQ(rows[1].values.at("scene"), "the model is not to be had");
+  const auto& untold = fields.lists["untold_claims"];
+  ASSERT_EQ(untold.size(), 1U);
+  EXPECT_EQ(untold[0].values.at("reason"), "the model is not to be had");
   EXPECT_EQ(fields.values["claims_confirmed"], "1");
   EXPECT_EQ(fields.values["claims_cannot_be_told"], "1");
 }
 
-TEST_F(SourceSections, AClaimWithoutCellsIsNotRunAndASourceWithoutAnyOnlyNamed) {
+TEST_F(SourceSections, AClaimWithoutCellsIsAGapWhereMostWereRunAndElseOneOfANumber) {
   input_.published.push_back(input_.published[0]);
   for (PublishedRow& row : input_.published[1].rows) row.scene = "elsewhere";
   input_.published[0].rows.push_back(input_.published[1].rows[0]);
   Fields fields;
   add_claim_fields(input_, fields);
-  ASSERT_EQ(fields.lists["claim_sources"].size(), 1U);
-  EXPECT_EQ(fields.lists["claim_sources"][0].lists.at("rows")[2].values.at("verdict"), "not run");
-  ASSERT_EQ(fields.lists["unmeasured_sources"].size(), 1U);
-  EXPECT_EQ(fields.lists["unmeasured_sources"][0].values.at("not_run"), "1");
+  auto& sources = fields.lists["claim_sources"];
+  ASSERT_EQ(sources.size(), 2U);
+  ASSERT_EQ(sources[0].lists.at("rows").size(), 2U);
+  EXPECT_EQ(sources[0].lists.at("rows")[1].values.at("verdict"), "not run");
+  EXPECT_TRUE(sources[0].lists.at("is_folded").empty());
+  EXPECT_TRUE(sources[1].lists.at("rows").empty());
+  EXPECT_EQ(sources[1].lists.at("is_folded").size(), 1U);
+  EXPECT_EQ(sources[1].values.at("not_run"), "1");
+  EXPECT_EQ(fields.lists["measured_sources"].size(), 1U);
+  EXPECT_EQ(fields.lists["untold_claims"].size(), 2U);  // stand there whatever was run
 }
 
 TEST_F(SourceSections, TheChainToUseIsNamedWithWhatItSaves) {
