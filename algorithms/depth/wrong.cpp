@@ -105,6 +105,12 @@ constexpr std::array mistakes{
          "leaves out long boxes at the image's sides, more of them the longer they are",
          "Godot issues 94210 and 106184, pull requests 97712 and 108347"},
         buffer<make_euclidean_nearest>},
+    DepthMistake{{"depth_by_w", "Nearness is the inverse of w, in every view",
+                  "in a parallel view w is 1 for all, and what is not nearer is hidden",
+                  "leaves out, in parallel views, what stands on or before something that reaches "
+                  "nearer elsewhere, such as the ground",
+                  "Godot issue 113329; MaskedOcclusionCulling issue 12"},
+                 buffer<make_depth_by_w>},
     DepthMistake{{"loose_bounds",
                   "What is asked is not the object's own box but a larger one (growth times as "
                   "large), as of a sphere around it",

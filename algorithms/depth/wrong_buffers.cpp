@@ -139,6 +139,26 @@ class Quantised : public AllDrawnFirst {
   }
 };
 
+/// Takes the inverse of w for nearness. In a parallel view w is 1 for all: what was drawn earlier
+/// counts as no farther than anything.
+class DepthByW : public FullSize {
+ public:
+  using FullSize::FullSize;
+
+ protected:
+  bool hides(const BoxWindow& box) override {
+    const WindowTransform& window = raster().window();
+    if (window.perspective()) return FullSize::hides(box);
+    const auto clear = static_cast<float>(window.nearness(window.camera().lens.far_m));
+    for (int y = box.y0; y < box.y1; ++y) {
+      for (int x = box.x0; x < box.x1; ++x) {
+        if (raster().nearness(x, y) <= clear) return false;
+      }
+    }
+    return true;
+  }
+};
+
 /// A quarter of the size along each side; a pixel of the buffer counts as covered if its centre is.
 class CentresAtReducedSize : public TestThenDraw {
  public:
@@ -325,6 +345,9 @@ std::unique_ptr<ICuller> make_euclidean_nearest(CullerInfo info, const WrongSett
 
 std::unique_ptr<ICuller> make_loose_bounds(CullerInfo info, const WrongSettings& settings) {
   return std::make_unique<LooseBounds>(std::move(info), settings);
+}
+std::unique_ptr<ICuller> make_depth_by_w(CullerInfo info, const WrongSettings& settings) {
+  return std::make_unique<DepthByW>(std::move(info), settings);
 }
 std::unique_ptr<ICuller> make_quantised(CullerInfo info, const WrongSettings& settings) {
   return std::make_unique<Quantised>(std::move(info), settings);

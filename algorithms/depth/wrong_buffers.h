@@ -24,6 +24,7 @@ std::unique_ptr<ICuller> make_wrong_reduction(CullerInfo info, const WrongSettin
 std::unique_ptr<ICuller> make_near_plane_projected(CullerInfo info, const WrongSettings& settings);
 std::unique_ptr<ICuller> make_euclidean_nearest(CullerInfo info, const WrongSettings& settings);
 std::unique_ptr<ICuller> make_loose_bounds(CullerInfo info, const WrongSettings& settings);
+std::unique_ptr<ICuller> make_depth_by_w(CullerInfo info, const WrongSettings& settings);
 std::unique_ptr<ICuller> make_quantised(CullerInfo info, const WrongSettings& settings);
 // What is drawn.
 std::unique_ptr<ICuller> make_centres_at_reduced_size(CullerInfo info,

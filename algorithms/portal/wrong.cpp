@@ -1,6 +1,6 @@
 // portal.wrong: negative controls: portal.polygon with one of the mistakes that engines made.
 //
-// Each leaves out what is seen, under the conditions that its description names.
+// Each leaves out what is seen, or walks too far, under the conditions that its description names.
 
 #include <algorithm>
 
@@ -16,7 +16,8 @@ using namespace portal_culling;
 
 struct PortalMistake : Mistake {
   WalkLimits limits;
-  bool from_eye = false;  // the view begins in the eye's cell
+  bool from_eye = false;      // the view begins in the eye's cell
+  bool forgets_view = false;  // what is left of the view is all of it
 };
 
 const std::array mistakes = {
@@ -25,8 +26,7 @@ const std::array mistakes = {
                    "another portal may show another part of it",
                    "leaves out what is seen through all portals between two rooms but the first",
                    "Godot, portal_pvs_builder: a room was entered once only"},
-                  {1, true},
-                  false},
+                  {1, true}},
     PortalMistake{{"eye_cell", "The view begins in the cell that the eye lies in",
                    "it begins at the near plane, which may lie behind a portal already, and the "
                    "part of the portal before it is not looked through",
@@ -35,6 +35,18 @@ const std::array mistakes = {
                    "noclip issue 643; Godot pull request 87713"},
                   {},
                   true},
+    PortalMistake{
+        {"forgets_view",
+         "Every portal in the image is gone through, whether or not the portals before it "
+         "leave it to be seen",
+         "nothing but the view that is left ends a way early, and the number of ways is a "
+         "power of their length",
+         "leaves out nothing that is seen, but keeps all that doors in the image lead to, "
+         "and comes to the bound of its visits where rooms have several doors",
+         "Godot pull request 46130: a limit for the depth of the walk was needed"},
+        {},
+        false,
+        true},
 };
 
 CullerInfo describe() {
@@ -46,6 +58,18 @@ CullerInfo describe() {
   info.limits = "Wrong on purpose: leaves out what is seen.";
   return info;
 }
+
+/// Narrows the view by no portal.
+class ForgetfulRule : public PolygonRule {
+ public:
+  bool narrow(std::uint32_t opening, const View&, View& left) {
+    View all;
+    whole(all);
+    if (!PolygonRule::narrow(opening, all, left)) return false;
+    left = all;
+    return true;
+  }
+};
 
 class WrongPortals : public WalkingCuller<PolygonRule> {
  public:
@@ -71,8 +95,10 @@ class WrongPortals : public WalkingCuller<PolygonRule> {
 namespace cullers {
 
 CullerEntry portal_wrong() {
-  return {describe(), [](const ParameterValues& values) {
-            return std::make_unique<WrongPortals>(chosen_mistake(mistakes, values));
+  return {describe(), [](const ParameterValues& values) -> std::unique_ptr<ICuller> {
+            const PortalMistake& mistake = chosen_mistake(mistakes, values);
+            if (!mistake.forgets_view) return std::make_unique<WrongPortals>(mistake);
+            return std::make_unique<WalkingCuller<ForgetfulRule>>(info_of(describe(), mistake));
           }};
 }
 

@@ -8,7 +8,10 @@
 // Limits: that is what they are for.
 // Sources: in the table.
 
+#include <algorithm>
 #include <array>
+#include <utility>
+#include <vector>
 
 #include "algorithms/surface/bsp_culler.h"
 #include "algorithms/surface/zbuffer_culler.h"
@@ -19,6 +22,49 @@ namespace vislab {
 namespace {
 
 using namespace surface;
+
+/// Paints whole triangles, the farthest first: by the mean of their corners' depths, which has no
+/// meaning for triangles that overlap in a ring.
+class WholePainter final : public SurfaceCuller {
+ public:
+  using SurfaceCuller::SurfaceCuller;
+
+ protected:
+  void paint(const Frame& frame, const Candidates& candidates) override {
+    const WindowTransform window(frame.camera, frame.viewport);
+    order_.clear();
+    for_each_range(candidates, frame, scene(), [&](const TriangleRange& range) {
+      const WindowRows rows = window.mesh(frame.objects.transforms[range.object]);
+      for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
+        const auto corners = corners_of(scene().mesh_of(range.object), i, rows);
+        order_.push_back({corners[0].depth + corners[1].depth + corners[2].depth,
+                          scene().first_triangle(range.object) + i, range.object});
+      }
+    });
+    // What is equally far away comes in the order of its numbers.
+    std::ranges::sort(order_, [](const Place& a, const Place& b) {
+      return std::pair(-a.depth, a.triangle) < std::pair(-b.depth, b.triangle);
+    });
+    for (const Place& place : order_) {
+      const WindowRows rows = window.mesh(frame.objects.transforms[place.object]);
+      const std::uint32_t in_mesh = place.triangle - scene().first_triangle(place.object);
+      if (!face_.set(window, corners_of(scene().mesh_of(place.object), in_mesh, rows))) continue;
+      face_.for_each_row([&](int y, RowSpan row, const RowEnds&) {
+        for (int x = row.x0; x < row.x1; ++x) image().at(x, y) = place.triangle;
+      });
+    }
+  }
+  std::size_t own_bytes() const override { return order_.capacity() * sizeof(Place); }
+
+ private:
+  struct Place {
+    double depth;  // of its corners, in sum
+    TriangleId triangle;
+    ObjectId object;
+  };
+  std::vector<Place> order_;
+  WindowFace face_;
+};
 
 using Make = std::unique_ptr<ICuller> (*)(CullerInfo info);
 
@@ -47,6 +93,10 @@ std::unique_ptr<ICuller> only_leaves(CullerInfo info) {
   return std::make_unique<BspPainter>(std::move(info), options);
 }
 
+std::unique_ptr<ICuller> whole_painter(CullerInfo info) {
+  return std::make_unique<WholePainter>(std::move(info));
+}
+
 constexpr const char* both_sources =
     "Textbook chapter 17, Culling (in German), 17.2.1, against Kowalka 2016, 2.4.1";
 
@@ -68,6 +118,16 @@ constexpr std::array mistakes = {
          "thesis",
          "the smaller depth is the farther one", "shows what is farthest", both_sources},
         other_comparison},
+    SurfaceMistake{
+        {"whole_polygons",
+         "The painter's order by a key of each whole triangle: the mean of its corners' "
+         "depths",
+         "triangles that overlap in a ring have no order, and of two that overlap the one "
+         "whose middle is nearer may lie behind",
+         "shows what is hidden where triangles tilt past each other, and in rings always",
+         "Textbook chapter 17 (in German), 17.2.3, why a tree cuts polygons; gripho.it, on "
+         "span buffers"},
+        whole_painter},
 };
 
 CullerInfo describe() {

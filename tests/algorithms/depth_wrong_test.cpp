@@ -154,6 +154,16 @@ TEST(DepthWrong, PointsNearestToTheEyeAreNotThoseOfLeastDepth) {
   expect_losses("euclidean_nearest", play);
 }
 
+TEST(DepthWrong, TheInverseOfWTellsNothingInParallelViews) {
+  Play parallel = city();
+  // From above, so that the ground lies below all that stands on it.
+  Camera above = looking({-45.0, 70.0, 40.0}, {-40.0, 0.0, -10.0});
+  above.lens = orthographic_lens(80.0, viewport.aspect(), 0.3, 400.0);
+  parallel.steps = {{above, {}}};
+  expect_losses("depth_by_w", parallel);
+  EXPECT_EQ(damage("depth.wrong[error=depth_by_w]", city(), viewport).false_px, 0U);
+}
+
 TEST(DepthWrong, LooseBoundsFindLessHidden) {
   expect_waste("loose_bounds,growth=2", "depth.wrong[error=loose_bounds,growth=1]", city());
 }

@@ -193,6 +193,18 @@ TEST(PortalWalk, EnteringARoomOnceLeavesOutWhatOtherPortalsShow) {
   EXPECT_FALSE(holds(kept_by(wrong, camera), seen(caster, wrong.frame(camera, small_image))));
 }
 
+TEST(PortalWalk, ForgettingWhatIsLeftOfTheViewGoesEveryWayToItsBound) {
+  const Scene scene = make_room_line({.rooms = 9, .holes = 4});
+  RayCaster caster(scene, {4, 1, 1});
+  CullerRun right("portal.polygon", scene), wrong("portal.wrong[error=forgets_view]", scene);
+  const glm::dvec3 eye = RoomLine::middle(0) + glm::dvec3(-1.5, 0.0, 0.0);
+  const Camera camera = looking(eye, eye + glm::dvec3(1.0, 0.0, 0.0));
+  EXPECT_TRUE(holds(kept_by(wrong, camera), seen(caster, wrong.frame(camera, small_image))));
+  kept_by(right, camera);
+  EXPECT_GT(wrong.counter("cells_visited"), 10U * right.counter("cells_visited"));
+  EXPECT_LE(wrong.counter("cells_visited"), 9U * 513U);
+}
+
 TEST(PortalWalk, EndsInARingOfThirtyRooms) {
   Scene scene = make_room_ring({30, 2, 1});
   for (CellId room = 0; room < 30; ++room) {

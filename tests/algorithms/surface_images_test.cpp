@@ -209,6 +209,17 @@ TEST(SurfaceImages, OfWrongVariantsAreFoundOutByTheJudge) {
   }
 }
 
+TEST(SurfaceImages, OfWholePolygonsPaintedByTheirMiddlesAreRightOfAPileAndWrongOfARing) {
+  const auto wrong_px = [&](double tilt_deg) {
+    CyclicBarsParameters bars;
+    bars.tilt_deg = tilt_deg;
+    const Scenario scenario(seen_from(make_cyclic_bars(bars), {{0.0, 0.0, 3.0}}));
+    return Painted("surface.wrong[error=whole_polygons]", scenario).judge_all().surface_px;
+  };
+  EXPECT_EQ(wrong_px(0.0), 0U);
+  EXPECT_GT(wrong_px(10.0), 50U);
+}
+
 TEST(SurfaceBsp, EmitsFromBackToFrontOrFromFrontToBack) {
   // Three triangles behind each other, each smaller than the one behind it.
   Scene scene;
