@@ -201,13 +201,6 @@ Description read_description(const fs::path& path, const fs::path& folder, int d
   return description;
 }
 
-/// Does the build have every stage of the chain? Throws InputError if the text is no chain.
-bool is_registered(const std::string& chain, const Registry& registry) {
-  return std::ranges::all_of(parse_chain(chain), [&](const CullerSpec& stage) {
-    return registry.entries().contains(stage.name);
-  });
-}
-
 /// A chain as it is written, which [[exclude]] may name, and in full.
 struct WantedChain {
   std::string written, canonical;
@@ -256,6 +249,12 @@ const std::vector<std::string>& paths_of(const std::string& scene, const Descrip
 }
 
 }  // namespace
+
+bool is_registered(const std::string& chain, const Registry& registry) {
+  return std::ranges::all_of(parse_chain(chain), [&](const CullerSpec& stage) {
+    return registry.entries().contains(stage.name);
+  });
+}
 
 std::string Block::title() const {
   if (!label.empty()) return label;

@@ -93,6 +93,9 @@ Matrix single_block(const std::string& chain, const Block& settings, const Regis
 /// Names and descriptions of the matrices in `folder`, sorted.
 std::vector<std::pair<std::string, std::string>> list_matrices(const std::filesystem::path& folder);
 
+/// Does the build have every stage of the chain? Throws InputError if the text is no chain.
+bool is_registered(const std::string& chain, const Registry& registry);
+
 /// Does `text` fit `pattern`, in which * stands for any text?
 bool matches(std::string_view pattern, std::string_view text);
 

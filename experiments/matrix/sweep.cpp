@@ -226,8 +226,9 @@ class SweepReader {
   }
 
   Sweep read() {
-    std::vector<std::string> known{"description", "failure", "cullers", "resolution", "frames",
-                                   "dial",        "scene",   "path",    "limit",      "expect"};
+    std::vector<std::string> known{"description", "failure", "cullers", "optional_cullers",
+                                   "resolution",  "frames",  "dial",    "scene",
+                                   "path",        "limit",   "expect"};
     known.insert(known.end(), pass_keys.begin(), pass_keys.end());
     refuse_unknown_keys(root_, known, "a sweep", file_);
     sweep_.description = required_text(root_, "description", "a sweep", file_);
@@ -289,20 +290,31 @@ class SweepReader {
   void read_methods() {
     const toml::node* const list = root_.get("cullers");
     if (list == nullptr) throw InputError(file_ + ": cullers, a list of texts, is missing");
-    for (const std::string& text : text_list(*list, "cullers", file_)) {
-      SweepMethod method{replaced(text, "<" + sweep_.dial.name + ">"), {}, {}};
-      for (const DialValue& value : values_) {
-        const std::string chain = replaced(text, value.text);
-        try {
-          registry_.make(chain);
-          method.chains.push_back(registry_.canonical(chain));
-        } catch (const InputError& error) {
-          throw InputError(place(file_, *list) + ": " + error.what());
-        }
+    for (const std::string& text : text_list(*list, "cullers", file_)) add_method(text, *list);
+    const toml::node* const optional = root_.get("optional_cullers");
+    if (optional == nullptr) return;
+    for (const std::string& text : text_list(*optional, "optional_cullers", file_)) {
+      if (is_registered(replaced(text, values_.front().text), registry_)) {
+        add_method(text, *optional);
+      } else {
+        sweep_.absent.push_back(text);
       }
-      sweep_.methods.push_back(std::move(method));
-      written_.push_back(text);
     }
+  }
+
+  void add_method(const std::string& text, const toml::node& list) {
+    SweepMethod method{replaced(text, "<" + sweep_.dial.name + ">"), {}, {}};
+    for (const DialValue& value : values_) {
+      const std::string chain = replaced(text, value.text);
+      try {
+        registry_.make(chain);
+        method.chains.push_back(registry_.canonical(chain));
+      } catch (const InputError& error) {
+        throw InputError(place(file_, list) + ": " + error.what());
+      }
+    }
+    sweep_.methods.push_back(std::move(method));
+    written_.push_back(text);
   }
 
   /// Which method the others' figures are shares of, if [limit] says so.
@@ -328,7 +340,9 @@ class SweepReader {
     if (list == nullptr) return;
     for (const toml::node& node : *list) {
       const SweepExpectation expectation = read_expectation(*node.as_table(), sweep_.dial, file_);
-      bool fits = false;
+      bool fits = std::ranges::any_of(sweep_.absent, [&](const std::string& culler) {
+        return matches(expectation.culler, culler);
+      });
       for (std::size_t i = 0; i < sweep_.methods.size(); ++i) {
         if (!matches(expectation.culler, written_[i])) continue;
         fits = true;

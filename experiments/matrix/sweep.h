@@ -4,6 +4,7 @@
 //   description = "…"
 //   failure = "F1"                 row of the failure atlas
 //   cullers = ["frustum.flat", "frustum.octree[depth=${dial}]"]
+//   optional_cullers = ["peer.bullet"]   left out, and said so, where this build does not have them
 //   resolution = "128x128"         "${dial}x128" as well
 //   frames = 8                     0 = as many as the path has
 //   rounds, seed, threads, draw, timeout_s: as in a matrix
@@ -89,6 +90,7 @@ struct Sweep {
   SweepDial dial;
   SweepLimit limit;
   std::vector<SweepMethod> methods;
+  std::vector<std::string> absent;  // optional cullers that this build does not have, as written
   /// Values of the dial that leave scene, path, resolution, seed and device alike share a block.
   std::vector<Block> blocks;
   std::vector<std::size_t> block_of_value;

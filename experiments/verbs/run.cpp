@@ -27,7 +27,15 @@ struct Work {
   std::vector<std::size_t> first_block;  // of each sweep
 };
 
+void tell_absent(const std::string& name, const std::vector<std::string>& absent) {
+  for (const std::string& culler : absent) {
+    std::cerr << "vislab: " << name << " goes on without " << culler
+              << ": not in this build (README.md: Peers)\n";
+  }
+}
+
 void add_sweep(Work& work, Sweep sweep) {
+  tell_absent(sweep.name, sweep.absent);
   work.first_block.push_back(work.blocks.size());
   work.blocks.insert(work.blocks.end(), sweep.blocks.begin(), sweep.blocks.end());
   work.sweeps.push_back(std::move(sweep));
@@ -72,10 +80,7 @@ void add_named(Work& work, const std::string& name, const Lab& lab,
     throw unknown_name("matrix, stress sweep or file", name, known);
   }
   const Matrix matrix = load_matrix(name, lab.matrices, lab.cullers);
-  for (const std::string& culler : matrix.absent) {
-    std::cerr << "vislab: " << name << " goes on without " << culler
-              << ": not in this build (README.md: Peers)\n";
-  }
+  tell_absent(name, matrix.absent);
   work.blocks.insert(work.blocks.end(), matrix.blocks.begin(), matrix.blocks.end());
 }
 

@@ -56,6 +56,23 @@ TEST_F(SweepFileTest, EveryValueOfTheDialIsABlockWithASceneOfItsOwn) {
   EXPECT_EQ(count_of(sweep.blocks[0], "none"), 2U) << "with the control";
 }
 
+TEST_F(SweepFileTest, OptionalCullersThatTheBuildDoesNotHaveAreLeftOutAndNamed) {
+  const std::string expected =
+      "[[expect]]\nculler = \"peer.unheard_of*\"\nbreaks = \"never\"\nsource = \"s\"\n"
+      "because = \"b\"\n";
+  const Sweep sweep =
+      load("optional_cullers = [\"peer.unheard_of[size=${dial}]\", \"frustum.bvh\"]\n" + head +
+           dial + scene + expected);
+  EXPECT_EQ(sweep.absent, (std::vector<std::string>{"peer.unheard_of[size=${dial}]"}));
+  ASSERT_EQ(sweep.methods.size(), 2U);
+  EXPECT_EQ(sweep.methods[1].culler, "frustum.bvh");
+  EXPECT_EQ(count_of(sweep.blocks[0], registry_.canonical("frustum.bvh")), 1U);
+  EXPECT_NE(refusal("optional_cullers = [\"frustum.bvh[unheard_of=1]\"]\n" + head + dial + scene)
+                .find("unheard_of"),
+            std::string::npos)
+      << "what the build has must be right";
+}
+
 TEST_F(SweepFileTest, TheResolutionMayDependOnTheDial) {
   const std::string widths =
       "[dial]\nname = \"width\"\nunit = \"px\"\nvalues = [16, 17, 18, 19, 20, 21, 22, 23]\n";
