@@ -33,6 +33,22 @@ std::string over_text(const WrongVariant& variant) {
          place_of(*over.block);
 }
 
+bool shows_nothing(const WrongVariant& variant) {
+  const Damage& pixels = variant.pixels;
+  const Damage& over = variant.over;
+  return pixels.wrong != nullptr && pixels.wrong->wrong_px() == 0 &&
+         (over.wrong == nullptr || !(over.wrong->over > over.right->over));
+}
+
+/// "not shown by what was measured here: leaves out what is behind": what would have to be there.
+std::string why_nothing_shows(const WrongVariant& variant) {
+  constexpr std::string_view declared = "Wrong on purpose: ";
+  std::string_view limits = variant.limits;
+  if (limits.starts_with(declared)) limits.remove_prefix(declared.size());
+  if (limits.ends_with('.')) limits.remove_suffix(1);
+  return "nothing measured here shows it: " + markdown_text(std::string(limits));
+}
+
 /// "cluster_tests 40 against 20"; only where there is a difference.
 std::string work_text(const WrongVariant& variant, const std::string& counter) {
   const Damage& work = variant.work;
@@ -68,7 +84,7 @@ Fields variant_fields(const WrongVariant& variant) {
     row.values["frame"] =
         std::to_string(worst.worst_frame) + ": " + format_count(worst.worst_frame_px) + " pixels";
   } else {
-    row.values["place"] = "–";
+    row.values["place"] = shows_nothing(variant) ? why_nothing_shows(variant) : "–";
   }
   if (damage.right != nullptr) {
     row.values["right"] =
@@ -116,6 +132,7 @@ std::string measured_text(const ReportInput& input, const Erratum& erratum,
       continue;
     }
     std::string pixels = "no false pixel";
+    if (shows_nothing(*variant)) pixels += ", and " + why_nothing_shows(*variant);
     if (damage.wrong->wrong_px() > 0) {
       pixels = pixel_text(*damage.wrong) + " pixels wrong on " + place_of(*damage.block);
       if (damage.right != nullptr) {

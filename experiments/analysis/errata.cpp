@@ -197,6 +197,30 @@ const CellSummary* any_right(const BlockSummary& block, const CullerSpec& wrong,
   return best;
 }
 
+/// A method of the same family in the place of the wrong stage of a chain, promise or not: where a
+/// family promises nothing, wrong is what is worse than that. Of several the one with most
+/// parameters like it.
+const CellSummary* sibling_in_chain(const BlockSummary& block, const CellSummary& cell,
+                                    const CullerSpec& wrong, Chains& chains) {
+  const std::vector<CullerSpec> wrong_chain = chains.of(cell.canonical);
+  const auto at = std::ranges::find(wrong_chain, wrong.name, &CullerSpec::name);
+  const CellSummary* best = nullptr;
+  std::size_t most = 0;
+  for (const CellSummary& other : block.cells) {
+    if (other.anchor || !other.judged || other.guarantee == Guarantee::erroneous) continue;
+    const std::vector<CullerSpec>& chain = chains.of(other.canonical);
+    if (chain.size() != wrong_chain.size() || at == wrong_chain.end()) continue;
+    const CullerSpec& stage = chain[static_cast<std::size_t>(at - wrong_chain.begin())];
+    if (family_of(stage.name) != family_of(wrong.name)) continue;
+    if (!stands_for(chain, wrong_chain, *at, {stage.name, {}})) continue;
+    const std::size_t shared = shared_parameters(wrong, stage);
+    if (best != nullptr && shared <= most) continue;
+    best = &other;
+    most = shared;
+  }
+  return best;
+}
+
 void keep_worst(const Damage& found, double size, Damage& worst, double& worst_size) {
   if (worst.wrong != nullptr && !(size > worst_size)) return;
   worst = found;
@@ -353,6 +377,7 @@ std::vector<WrongVariant> find_wrong_variants(const std::vector<const BlockSumma
         right = named_right(*block, cell, *wrong, erratum->against, chains);
       }
       if (right == nullptr) right = any_right(*block, *wrong, chains);
+      if (right == nullptr && !is_named) right = sibling_in_chain(*block, cell, *wrong, chains);
       add_damage({block, &cell, right}, erratum == nullptr ? "" : erratum->counter, variant,
                  sizes[name]);
     }
