@@ -22,10 +22,10 @@ CullerInfo chcpp_info() {
   info.stage = PipelineStage::raster;
   info.needs_device = true;
   info.parameters = {
-      ParameterSpec::integer("leaf_triangles", 1000, 1, 100'000'000, "triangles", build,
+      ParameterSpec::integer("leaf_triangles", 100, 1, 100'000'000, "triangles", build,
                              "nodes with so many triangles, a draw counting as 20, are asked about "
                              "and drawn as a whole"),
-      ParameterSpec::integer("batch", 10, 1, 10'000, "nodes", query,
+      ParameterSpec::integer("batch", 40, 1, 10'000, "nodes", query,
                              "so many hidden nodes at most wait to be asked about in one go"),
       ParameterSpec::boolean(
           "lazy", true, query,

@@ -42,7 +42,7 @@ CullerInfo describe() {
                             ParameterSpec::Stage::build,
                             "keeps units of a hierarchy that hold something visible, visible "
                             "objects, or only their visible triangles; a finer level saves more"),
-      ParameterSpec::integer("leaf_triangles", 1000, 1, 100'000'000, "triangles",
+      ParameterSpec::integer("leaf_triangles", 100, 1, 100'000'000, "triangles",
                              ParameterSpec::Stage::build,
                              "level=node: nodes with so many triangles, a draw counting as 20, are "
                              "units, as in occlusion.chcpp")};
