@@ -73,6 +73,11 @@ void read_place(const toml::table& table, const Registry& registry, const std::s
   }
   row.against_scene = value_of<std::string>(table, "against_scene", "a text", file).value_or("");
   row.against_path = value_of<std::string>(table, "against_path", "a text", file).value_or("");
+  if (row.compares_places() && is_time(row.metric)) {
+    throw InputError(place(file, table) +
+                     ": times of two places are not from the same rounds; compare what is drawn, "
+                     "metric = \"submitted_triangles\"");
+  }
   row.compares = is_time(row.metric) || table.contains("against") || row.compares_places();
   const std::string culler = text_of(table, "culler", file);
   const std::string against =
@@ -198,10 +203,6 @@ Estimate figure_of(const BlockSummary& block, const CellSummary& cell, const Blo
   const CellSummary* const against = find_cell(there, row.against);
   const CellSummary* const none_there = find_cell(there, "none");
   if (none == nullptr || against == nullptr || none_there == nullptr) return Estimate::none();
-  if (&there != &block && row.metric == PublishedRow::Metric::frame_ms) {
-    // Each block has its own none: what counts is how long frames take.
-    return quotient(against->frame_ms.median, cell.frame_ms.median);
-  }
   const Estimate own = measure_of(cell, *none, row);
   if (!row.compares || !own.measured()) return own;
   if (row.metric == PublishedRow::Metric::frame_ms && against == none) {
@@ -215,7 +216,7 @@ Estimate figure_of(const BlockSummary& block, const CellSummary& cell, const Blo
 /// What OwnFigure::reach is; `there` is the block of `against`.
 double reach_of(const BlockSummary& block, const BlockSummary& there, const PublishedRow& row) {
   const bool is_share = row.metric == PublishedRow::Metric::culled && !row.compares;
-  const bool is_frame = row.metric == PublishedRow::Metric::frame_ms && &there == &block;
+  const bool is_frame = row.metric == PublishedRow::Metric::frame_ms;
   double best = std::numeric_limits<double>::quiet_NaN();
   if (!is_share && !is_frame) return best;
   for (const CellSummary& cell : block.cells) {

@@ -25,7 +25,8 @@
 //                                  metrics stand for themselves, and are divided by that of
 //                                  `against` if there is one
 //   against_scene = "hares_14"     where that stands, if elsewhere; left out: on the same scene
-//   against_path = "hares_walk"    and the same path
+//   against_path = "hares_walk"    and the same path. Not for times, which can be set beside each
+//                                  other only within the same rounds
 //   cannot_be_told = "…"           instead of accept, metric, scene, path, device, culler and
 //                                  against: why nothing here can stand beside the figure
 //
@@ -93,12 +94,12 @@ struct OwnFigure {
   /// The block of `against`, if that is another one.
   const BlockSummary* other = nullptr;
   /// Our figure (see the head of this file). frame_ms against none is paired by frame and round;
-  /// other quotients of times are those of two such ratios, of the medians of cull_us, or, between
-  /// blocks, of frame_ms, and the errors of both add up; so do those of deviations and of shares of
-  /// the time. Whatever else is no time has no interval. NaN for 0 against 0.
+  /// other quotients of times are those of two such ratios, or of the medians of cull_us, and the
+  /// errors of both add up; so do those of deviations and of shares of the time. Whatever else is
+  /// no time has no interval. NaN for 0 against 0.
   Estimate ratio = Estimate::none();
   /// The same figure of the best oracle in the block, the most that any method could reach there;
-  /// of frame times in one place and of shares of all triangles only, else NaN.
+  /// of frame times and of shares of all triangles only, else NaN.
   double reach = std::numeric_limits<double>::quiet_NaN();
 
   /// Is ours below what would confirm the claim, and so is all that the scene could show?

@@ -153,33 +153,26 @@ TEST_F(Published, ModelledDevicesCountOnlyForRowsThatNameThem) {
   EXPECT_EQ(own_figure(there, {block()}).cell, nullptr);
 }
 
-TEST_F(Published, PlacesAreComparedByHowLongFramesTakeThere) {
+TEST_F(Published, PlacesAreComparedByWhatIsDrawnThere) {
   BlockSummary far = block();
   far.scene = "village";
-  far.path = "walk";
   BlockSummary near = block();
-  near.path = far.path;
-  const auto takes = [&](BlockSummary& block, Estimate ms) {
-    for (CellSummary& cell : block.cells) {
-      if (cell.canonical == registry_.canonical("frustum.flat")) cell.frame_ms.median = ms;
-    }
-  };
-  takes(near, {10.0, 8.0, 12.0});
-  takes(far, {5.0, 5.0, 5.0});
+  for (CellSummary& cell : near.cells) cell.submitted_triangles = 30.0;
+  for (CellSummary& cell : far.cells) cell.submitted_triangles = 60.0;
+  const std::string other = "against = \"frustum.flat\"\nagainst_scene = \"village\"\n";
   const PublishedRow row =
-      rows(claim + "accept = [0, 1]\nagainst = \"frustum.flat\"\nagainst_scene = \"village\"\n" +
-           place_keys)
+      rows(claim + "accept = [0, 1]\nmetric = \"submitted_triangles\"\n" + place_keys + other)
           .at(0);
   EXPECT_TRUE(row.compares_places());
   const std::vector<BlockSummary> both{near, far};
   const OwnFigure own = own_figure(row, both);
   EXPECT_EQ(own.other, &both[1]);
   EXPECT_DOUBLE_EQ(own.ratio.value, 0.5);
-  EXPECT_NEAR(own.ratio.low, 5.0 / 12.0, 1e-12);
-  EXPECT_NEAR(own.ratio.high, 5.0 / 8.0, 1e-12);
   EXPECT_EQ(own_figure(row, {near}).cell, nullptr) << "the other place was not run";
   far.viewport.width *= 2;
   EXPECT_EQ(own_figure(row, {near, far}).cell, nullptr) << "images of another size";
+  EXPECT_NE(refusal(claim + "accept = [0, 1]\n" + place_keys + other).find("same rounds"),
+            std::string::npos);
 }
 
 TEST_F(Published, SpreadsAndSharesOfTheTimeHaveIntervals) {
