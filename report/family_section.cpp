@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "common/scene/error.h"
 #include "report/chart.h"
@@ -84,6 +85,14 @@ FamilyOn family_on(const BlockSummary& block, const std::string& family, const R
     }
   }
   return found;
+}
+
+/// Does a block of the same scene say more of the family: with more methods, of these drawn, in
+/// more frames?
+bool tells_more(const FamilyOn& a, const BlockSummary& on_a, const FamilyOn& b,
+                const BlockSummary& on_b) {
+  return std::tuple(a.cells.size(), on_a.drawn, on_a.frames) >
+         std::tuple(b.cells.size(), on_b.drawn, on_b.frames);
 }
 
 Fields method_row(const CullerInfo& info) {
@@ -266,12 +275,21 @@ Fields chapter_fields(const ReportInput& input, const std::vector<const BlockSum
   }
   std::vector<std::pair<const BlockSummary*, FamilyOn>> on;
   auto& best = fields.lists["family_best"];
+  std::map<std::string, std::size_t> of_scene;  // places in `on`
   for (const BlockSummary& block : input.blocks) {
     if (is_in(in_diagrams, block)) continue;
     FamilyOn found = family_on(block, family, input.cullers);
     if (found.cells.empty()) continue;
-    best.push_back(best_row(input.blocks, block, found));
+    const auto [known, is_new] = of_scene.emplace(block.scene, on.size());
+    if (!is_new && tells_more(found, block, on[known->second].second, *on[known->second].first)) {
+      known->second = on.size();
+    }
     on.emplace_back(&block, std::move(found));
+  }
+  std::set<std::size_t> shown;
+  for (const auto& [scene, place] : of_scene) shown.insert(place);
+  for (const std::size_t i : shown) {
+    best.push_back(best_row(input.blocks, *on[i].first, on[i].second));
   }
   fields.flag("has_family_best", !best.empty());
   fields.values["saving"] = saving_sentence(input.blocks, on);

@@ -1,6 +1,8 @@
 #include "report/query_section.h"
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "common/scene/error.h"
 #include "report/device_fits.h"
@@ -145,6 +147,25 @@ void add_pictures(const ReportInput& input, const QueryFindings& findings,
   fields.flag("has_query_pictures", any || !missing.empty());
 }
 
+/// Of each scene on each device the block in which most methods asked, in the blocks' order.
+std::vector<const BlockSummary*> telling_blocks(const std::vector<BlockSummary>& blocks,
+                                                const std::vector<const BlockSummary*>& left_out) {
+  using Place = std::pair<std::string, std::string>;
+  std::map<Place, std::pair<std::ptrdiff_t, const BlockSummary*>> best;
+  for (const BlockSummary& block : blocks) {
+    if (std::ranges::count(left_out, &block) > 0) continue;
+    const auto asking = std::ranges::count_if(block.cells, asks_questions);
+    auto& known = best[{block.scene, block.device}];
+    if (asking > known.first) known = {asking, &block};
+  }
+  std::vector<const BlockSummary*> chosen;
+  for (const auto& [place, found] : best) {
+    if (found.second != nullptr) chosen.push_back(found.second);
+  }
+  std::ranges::sort(chosen);  // all lie in one vector
+  return chosen;
+}
+
 }  // namespace
 
 void add_query_fields(const ReportInput& input, const QueryFindings& findings,
@@ -152,10 +173,9 @@ void add_query_fields(const ReportInput& input, const QueryFindings& findings,
   const DeviceFits fits(input.blocks);
   const std::vector<const BlockSummary*> charted = findings.diagram_blocks();
   auto& rows = fields.lists["queries"];
-  for (const BlockSummary& block : input.blocks) {
-    if (std::ranges::count(charted, &block) > 0) continue;
-    for (const CellSummary& cell : block.cells) {
-      if (asks_questions(cell)) rows.push_back(row_of(block, cell, fits));
+  for (const BlockSummary* block : telling_blocks(input.blocks, charted)) {
+    for (const CellSummary& cell : block->cells) {
+      if (asks_questions(cell)) rows.push_back(row_of(*block, cell, fits));
     }
   }
   auto& phases = fields.lists["phases"];

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <set>
 
 #include "common/judge/metrics.h"
@@ -20,16 +22,7 @@
 namespace vislab {
 namespace {
 
-Fields floor_fields(const BlockSummary& block, const std::string& title) {
-  Fields row;
-  row.values["title"] = title;
-  row.values["pixels"] = format_count(block.floor_pixels);
-  row.values["disputed"] = format_count(block.floor_disputed_px);
-  row.values["share"] = format_percent(static_cast<double>(block.floor_disputed_px) /
-                                       static_cast<double>(block.floor_pixels));
-  row.values["undisputed"] = format_count(block.floor_undisputed_px);
-  return row;
-}
+constexpr std::size_t most_in_abstract = 12;
 
 Fields noise_fields(const BlockSummary& block, const std::string& title) {
   Fields row;
@@ -52,6 +45,23 @@ FloorSum floor_of(const std::vector<const BlockSummary*>& blocks) {
     sum.undisputed += block->floor_undisputed_px;
   }
   return sum;
+}
+
+Fields floor_fields(const std::string& scene, const FloorSum& floor) {
+  Fields row;
+  row.values["title"] = scene;
+  row.values["pixels"] = format_count(floor.pixels);
+  row.values["disputed"] = format_count(floor.disputed);
+  row.values["share"] =
+      format_percent(static_cast<double>(floor.disputed) / static_cast<double>(floor.pixels));
+  row.values["undisputed"] = format_count(floor.undisputed);
+  return row;
+}
+
+std::vector<const BlockSummary*> blocks_of(const ReportInput& input, const ShownScene& scene) {
+  std::vector<const BlockSummary*> blocks{&input.blocks[scene.block]};
+  for (const std::size_t other : scene.others) blocks.push_back(&input.blocks[other]);
+  return blocks;
 }
 
 /// A fact's name as the report writes it: "build_type" as "Build type".
@@ -182,15 +192,31 @@ Fields report_fields(const ReportInput& input, const std::string& verdict_templa
   for (const ShownScene& scene : shown) {
     scenes.push_back(scene_fields(input, scene, fits, verdict_template, folder));
   }
+  // Those with most methods, in the order of the scenes.
+  std::vector<std::size_t> order(shown.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t i) {
+    return input.blocks[shown[i].block].cells.size();
+  });
+  order.resize(std::min(order.size(), most_in_abstract));
+  std::ranges::sort(order);
+  auto& in_abstract = fields.lists["abstract_scenes"];
+  for (const std::size_t i : order) {
+    in_abstract.emplace_back();
+    in_abstract.back().values["verdict"] = scenes[i].values["verdict"];
+  }
+  fields.flag("has_more_in_abstract", shown.size() > order.size());
+  fields.values["more_in_abstract"] = format_count(shown.size() - order.size());
   std::size_t others = 0;
   for (const ShownScene& scene : shown) others += scene.others.size();
   fields.flag("has_other_runs", others > 0);
   fields.values["other_runs"] = format_count(others);
-  for (const BlockSummary& block : input.blocks) {
-    if (std::ranges::count(in_diagrams, &block) > 0) continue;
-    const std::string title = markdown_text(title_of(input.blocks, block));
-    if (block.floor_pixels > 0) floors.push_back(floor_fields(block, title));
-    noises.push_back(noise_fields(block, title));
+  for (const ShownScene& scene : shown) {
+    const BlockSummary& block = input.blocks[scene.block];
+    if (const FloorSum floor = floor_of(blocks_of(input, scene)); floor.pixels > 0) {
+      floors.push_back(floor_fields(markdown_text(block.scene), floor));
+    }
+    noises.push_back(noise_fields(block, markdown_text(title_of(input.blocks, block))));
   }
   auto& gaps = fields.lists["missing_blocks"];
   for (const MissingCell& block : input.missing_blocks) {
