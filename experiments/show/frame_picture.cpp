@@ -15,6 +15,12 @@ TriangleClass class_of(bool kept, bool visible) {
   return visible ? TriangleClass::culled_wrongly : TriangleClass::culled_rightly;
 }
 
+/// Of a frame without errors: much that is culled beside much that is seen.
+double shows(const Verdict& verdict) {
+  return static_cast<double>(verdict.visible_triangles) *
+         static_cast<double>(verdict.scene_triangles - verdict.submitted_triangles);
+}
+
 /// Marks the triangles of a set.
 std::vector<std::uint8_t> flags_of(const VisibleSet& set, std::size_t triangles) {
   std::vector<std::uint8_t> flags(triangles, 0);
@@ -81,8 +87,7 @@ std::string StoredPictures::write(const BlockSummary& block, const CellSummary& 
   for (std::size_t i = 1; i < verdicts->frames.size(); ++i) {
     const Verdict& a = verdicts->frames[i];
     const Verdict& b = verdicts->frames[best];
-    if (a.false_px != b.false_px ? a.false_px > b.false_px
-                                 : a.submitted_triangles < b.submitted_triangles) {
+    if (a.false_px != b.false_px ? a.false_px > b.false_px : shows(a) > shows(b)) {
       best = i;
     }
   }

@@ -25,8 +25,8 @@ class StoredPictures {
   StoredPictures(std::filesystem::path results, StoredScenes& scenes);
 
   /// Draws the frame of a cell that tells most: the one with the most false pixels, or else the one
-  /// with the most triangles culled. Returns a caption that names the frame. Throws InputError if
-  /// the scene is no longer the one that was measured.
+  /// with the greatest product of triangles seen and triangles culled. Returns a caption that names
+  /// the frame. Throws InputError if the scene is no longer the one that was measured.
   std::string write(const BlockSummary& block, const CellSummary& cell,
                     const std::filesystem::path& file);
 
