@@ -1,6 +1,7 @@
 #include "report/chains_section.h"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 #include "experiments/analysis/chains.h"
@@ -10,7 +11,8 @@
 namespace vislab {
 namespace {
 
-constexpr std::size_t most_named = 3;  // of those that cannot be told from the fastest
+constexpr std::size_t least_families = 2;  // that a choice is between
+constexpr std::size_t most_named = 3;      // of those that cannot be told from the fastest
 
 /// The scene and path, and what else tells blocks on them apart.
 std::string place_of(const std::vector<ChainChoice>& choices, const BlockSummary& block) {
@@ -99,10 +101,21 @@ Fields tally_fields(const std::string& family, const FamilyTally& tally) {
   return row;
 }
 
+/// Where methods of several families stand beside each other there is something to choose; what was
+/// run for one claim or one mistake would only make the table long. All, if there is no such place.
+std::vector<ChainChoice> worth_choosing(const std::vector<ChainChoice>& choices) {
+  std::vector<ChainChoice> some;
+  std::ranges::copy_if(choices, std::back_inserter(some), [](const ChainChoice& choice) {
+    return choice.families.size() >= least_families;
+  });
+  return some.empty() ? choices : some;
+}
+
 }  // namespace
 
 void add_chain_fields(const ReportInput& input, Fields& fields) {
-  const std::vector<ChainChoice> choices = choose_chains(input.blocks);
+  const std::vector<ChainChoice> all = choose_chains(input.blocks);
+  const std::vector<ChainChoice> choices = worth_choosing(all);
   auto& rows = fields.lists["choices"];
   auto& family_rows = fields.lists["family_choices"];
   auto& names = fields.lists["chosen_families"];
@@ -120,8 +133,10 @@ void add_chain_fields(const ReportInput& input, Fields& fields) {
     names.push_back(tally_fields(family, tallies.at(family)));
   }
   fields.values["tolerance"] = format_percent(nearly_right_share);
-  fields.values["not_timed"] = std::to_string(input.blocks.size() - choices.size());
-  fields.flag("has_not_timed", choices.size() < input.blocks.size());
+  fields.values["not_timed"] = std::to_string(input.blocks.size() - all.size());
+  fields.flag("has_not_timed", all.size() < input.blocks.size());
+  fields.values["one_family"] = std::to_string(all.size() - choices.size());
+  fields.flag("has_one_family", choices.size() < all.size());
   fields.flag("has_choices", !choices.empty());
   fields.flag("has_families", !families.empty());
   fields.lists["guides"] = guide_fields(input.blocks);

@@ -183,6 +183,19 @@ TEST_F(SourceSections, TheChainToUseIsNamedWithWhatItSaves) {
   EXPECT_EQ(fields.lists["chosen_families"][0].values.at("wins"), "1");
 }
 
+TEST_F(SourceSections, WhereOneFamilyWasRunThereIsNothingToChoose) {
+  BlockSummary both = fabricated_block("both");
+  both.cells.push_back(registered_cell(registry_, "frustum.flat", 0.25, 0, 1.0));
+  both.cells.push_back(registered_cell(registry_, "depth.hzb", 0.2, 0, 0.5));
+  input_.blocks.push_back(both);
+  Fields fields;
+  add_chain_fields(input_, fields);
+  ASSERT_EQ(fields.lists["choices"].size(), 1U);
+  EXPECT_EQ(fields.lists["choices"][0].values.at("best"), "`depth.hzb`");
+  EXPECT_EQ(fields.values["one_family"], "1");
+  EXPECT_EQ(fields.lists["has_one_family"].size(), 1U);
+}
+
 TEST_F(SourceSections, TheSheetInFrontNamesBestChainPromisesErrataAndFloor) {
   Fields fields;
   add_claim_fields(input_, fields);
