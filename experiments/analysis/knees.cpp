@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 
 namespace vislab {
 namespace {
@@ -159,6 +161,26 @@ SizePoint common_point(const std::vector<SizeCurve>& scenes, std::size_t value) 
   return common;
 }
 
+using Facts = std::map<std::string, std::set<std::string>>;
+
+/// What the cells of a block say of the facts that are there by name.
+void add_facts(const BlockSummary& block, Facts& facts) {
+  for (auto& [name, texts] : facts) {
+    if (const auto one = block.context.find(name); one != block.context.end()) {
+      texts.insert(one->second);
+    }
+    if (const auto mixed = block.mixed_context.find(name); mixed != block.mixed_context.end()) {
+      texts.insert(mixed->second.begin(), mixed->second.end());
+    }
+  }
+}
+
+std::string joined(const std::set<std::string>& texts) {
+  std::string all;
+  for (const std::string& text : texts) all += (all.empty() ? "" : ", ") + text;
+  return all;
+}
+
 }  // namespace
 
 std::size_t SizeCurve::measured() const {
@@ -179,16 +201,16 @@ bool SizeResult::is_complete() const {
 }
 
 SizeResult find_knees(const SizeSweep& sweep, const SizeCellOf& cell_of) {
-  SizeResult result{sweep, {}, ""};
+  SizeResult result;
+  result.sweep = sweep;
+  Facts facts{{"cpu", {}}, {"date", {}}};
   for (const SizeMethod& method : sweep.methods) {
     SizeVerdict verdict;
     verdict.method = method;
     for (std::size_t block = 0; block < sweep.blocks.size(); ++block) {
       verdict.scenes.push_back(curve_of(sweep, method, block, cell_of));
       const SizeCell first = cell_of(block, method.chains.front());
-      if (!result.machine.empty() || first.block == nullptr) continue;
-      const auto processor = first.block->context.find("cpu");
-      if (processor != first.block->context.end()) result.machine = processor->second;
+      if (first.block != nullptr) add_facts(*first.block, facts);
     }
     for (std::size_t value = 0; value < sweep.values.size(); ++value) {
       verdict.common.points.push_back(common_point(verdict.scenes, value));
@@ -196,6 +218,8 @@ SizeResult find_knees(const SizeSweep& sweep, const SizeCellOf& cell_of) {
     find_knee(verdict.common);
     result.verdicts.push_back(std::move(verdict));
   }
+  result.machine = joined(facts["cpu"]);
+  result.date = joined(facts["date"]);
   return result;
 }
 

@@ -2,9 +2,9 @@
 //
 // The knee is the smallest model whose efficiency is at least 95 % of the best one's, with no more
 // wrong pixels than that has. Smaller is what holds fewer bytes after build(), by more than 1 %; of
-// models that hold the same, the one whose value stands first in the sweep. The common knee of several scenes is
-// chosen in the same way by the geometric mean of the efficiencies, the sum of the wrong pixels and
-// the sum of the bytes, of the values that were measured on every scene.
+// models that hold the same, the one whose value stands first in the sweep. The common knee of
+// several scenes is chosen in the same way by the geometric mean of the efficiencies, the sum of
+// the wrong pixels and the sum of the bytes, of the values that were measured on every scene.
 #pragma once
 
 #include <cstdint>
@@ -59,7 +59,9 @@ struct SizeVerdict {
 struct SizeResult {
   SizeSweep sweep;
   std::vector<SizeVerdict> verdicts;  // one for each of the sweep's methods
-  std::string machine;                // what the first measured cell says of its processor
+  /// What the cells of the measured blocks say of their processor and day, each once, ascending,
+  /// with commas between them; empty where they say nothing.
+  std::string machine, date;
 
   bool was_measured() const;
   /// Every value on every scene.

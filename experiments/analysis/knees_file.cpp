@@ -57,7 +57,8 @@ void write_verdict(const SizeResult& result, const SizeVerdict& verdict, std::os
       << "\nknee = " << quoted(sweep.values[*verdict.common.knee]) << '\n';
   if (!verdict.method.note.empty()) out << "note = " << quoted(verdict.method.note) << '\n';
   out << "sweep = " << quoted(sweep.name) << "\ncost = " << quoted(to_string(sweep.cost))
-      << "\nmachine = " << quoted(result.machine) << "\nregenerate = "
+      << "\nmachine = " << quoted(result.machine) << "\ndate = " << quoted(result.date)
+      << "\nregenerate = "
       << quoted("vislab run model_size && vislab knees --write data/knees.toml") << '\n';
   for (const SizeCurve& scene : verdict.scenes) write_scene(sweep, verdict, scene, out);
 }
@@ -111,7 +112,7 @@ std::vector<CommittedKnee> read_knees(const std::filesystem::path& path) {
     const toml::table& table = *node.as_table();
     refuse_unknown_keys(table,
                         {"dial", "culler", "parameter", "default", "knee", "note", "sweep", "cost",
-                         "machine", "regenerate", "scene"},
+                         "machine", "date", "regenerate", "scene"},
                         "[[knee]]", file);
     CommittedKnee knee;
     knee.dial = text_of(table, "dial", file);
@@ -122,6 +123,7 @@ std::vector<CommittedKnee> read_knees(const std::filesystem::path& path) {
     knee.note = value_of<std::string>(table, "note", "a text", file).value_or("");
     knee.sweep = text_of(table, "sweep", file);
     knee.machine = text_of(table, "machine", file);
+    knee.date = text_of(table, "date", file);
     if (const toml::array* const scenes = tables(table, "scene", file)) {
       for (const toml::node& scene : *scenes) {
         knee.scenes.push_back(text_of(*scene.as_table(), "scene", file));

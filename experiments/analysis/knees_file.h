@@ -11,6 +11,7 @@
 //   sweep = "octree_depth"         of experiments/model_size
 //   cost = "decision_us"           what its speed is measured by
 //   machine = "…"                  the processor that measured it
+//   date = "2026-11-23"            when; several days with commas between them
 //   regenerate = "…"               the commands that make this entry again
 //   [[knee.scene]]
 //   scene, path                    where it was measured
@@ -29,7 +30,7 @@ namespace vislab {
 
 /// What the file says of one culler's parameter.
 struct CommittedKnee {
-  std::string dial, culler, parameter, default_value, knee, note, sweep, machine;
+  std::string dial, culler, parameter, default_value, knee, note, sweep, machine, date;
   std::vector<std::string> scenes;
 };
 

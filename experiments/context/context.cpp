@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <ctime>
 #include <fstream>
 #include <memory>
 #include <sstream>
@@ -62,6 +63,16 @@ std::string output_of(const std::string& command) {
   return line;
 }
 
+/// "2026-11-23", in universal time.
+std::string today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm date{};
+  ::gmtime_r(&now, &date);
+  std::array<char, 16> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%d", &date);
+  return text.data();
+}
+
 std::string quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -103,6 +114,7 @@ std::map<std::string, std::string> run_context(const std::filesystem::path& repo
   context["dirty"] = output_of(git + " status --porcelain --untracked-files=no 2>/dev/null").empty()
                          ? "no"
                          : "yes";
+  context["date"] = today();
   context["load"] = first_line("/proc/loadavg").substr(0, 4);
   return context;
 }

@@ -41,7 +41,7 @@ struct Measured {
 /// A block whose cells are those of the sweep's only method.
 BlockSummary block_of(const SizeSweep& sweep, const std::vector<Measured>& measured) {
   BlockSummary block;
-  block.context["cpu"] = "a processor";
+  block.context = {{"cpu", "a processor"}, {"date", "2026-01-02"}};
   for (std::size_t i = 0; i < measured.size(); ++i) {
     CellSummary cell;
     cell.canonical = sweep.methods.front().chains[i];
@@ -109,9 +109,10 @@ TEST(Knees, DecisionsAreComparedWithTheSoonest) {
 TEST(Knees, TheCommonKneeIsThatOfTheGeometricMean) {
   const SizeSweep sweep = sweep_on({"one", "two"}, SizeCost::frame_ms);
   // The first scene alone is content with the first value, the second asks for the third.
-  const std::vector<BlockSummary> blocks{
+  std::vector<BlockSummary> blocks{
       block_of(sweep, {{0.96, 1, 0}, {0.97, 2, 0}, {0.99, 3, 0}, {1.00, 4, 0}}),
       block_of(sweep, {{0.20, 1, 0}, {0.25, 2, 0}, {0.40, 3, 0}, {0.41, 4, 0}})};
+  blocks[1].mixed_context["date"] = {"2026-01-02", "2026-01-04"};
   const SizeResult result = knees_of(sweep, blocks);
   const SizeVerdict& verdict = result.verdicts.front();
   EXPECT_EQ(*verdict.scenes[0].knee, 0U);
@@ -122,6 +123,7 @@ TEST(Knees, TheCommonKneeIsThatOfTheGeometricMean) {
   EXPECT_EQ(verdict.common.points[3].bytes, 8U) << "of both scenes";
   EXPECT_TRUE(verdict.default_is_knee());
   EXPECT_EQ(result.machine, "a processor");
+  EXPECT_EQ(result.date, "2026-01-02, 2026-01-04") << "of all that was measured";
   EXPECT_TRUE(result.is_complete());
 }
 
@@ -156,7 +158,7 @@ TEST(KneesFile, IsWrittenOnlyWhenNothingIsMissing) {
   const std::string text = knees_text({knees_of(sweep, {whole, whole})});
   EXPECT_NE(text.find("culler = \"test.tree\"\nparameter = \"depth\"\ndefault = \"4\"\nknee = "
                       "\"2\"\nsweep = \"test_depth\"\ncost = \"frame_ms\"\nmachine = \"a "
-                      "processor\""),
+                      "processor\"\ndate = \"2026-01-02\""),
             std::string::npos)
       << text;
   EXPECT_NE(text.find("scene = \"two\"\nknee = \"2\"\nbest = \"4\""), std::string::npos) << text;

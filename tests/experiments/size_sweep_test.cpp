@@ -104,7 +104,7 @@ TEST_F(SizeSweepTest, AllOfTheLabCanBeReadAndLookAtSeveralScenes) {
   }
   for (const char* dial :
        {"octree depth", "octree leaf size", "bounding volume", "cluster size", "normal classes",
-        "sectors", "buffer size", "occluder triangles", "sigma", "query batch"}) {
+        "sectors", "buffer size", "occluder triangles", "sigma", "query batch", "unit size"}) {
     EXPECT_TRUE(dials.contains(dial)) << dial << " has no sweep";
   }
 }
@@ -134,6 +134,8 @@ TEST_F(SizeSweepTest, DefaultsAreTheKneesThatAreCommitted) {
       EXPECT_FALSE(knee.note.empty()) << what << " is not at its knee, and no note says why";
     }
     EXPECT_GE(knee.scenes.size(), 2U) << what;
+    EXPECT_FALSE(knee.machine.empty()) << what << " does not say what measured it";
+    EXPECT_FALSE(knee.date.empty()) << what << " does not say when it was measured";
   }
 }
 
