@@ -1,6 +1,7 @@
 #include "experiments/analysis/statistics.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -13,7 +14,6 @@ namespace {
 
 constexpr int resamples = 1000;
 constexpr std::uint64_t bootstrap_seed = 20260101;
-constexpr std::size_t few_rounds = 3;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Reorders the samples, so that resampling needs no copies.
@@ -25,35 +25,71 @@ double median_in_place(std::span<double> samples) {
   return 0.5 * (*std::max_element(samples.begin(), middle) + *middle);
 }
 
-/// `count` indices below `count`, drawn with replacement; or all of them in order.
-void draw_indices(Random& random, bool resample, std::vector<std::size_t>& indices) {
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    indices[i] = resample ? random.below(indices.size()) : i;
-  }
+/// Student's t that 2.5 % exceed. Of ten degrees of freedom and more by the expansion about the
+/// normal distribution (Abramowitz and Stegun, 26.7.5), to three decimals.
+double student_95(std::size_t degrees) {
+  constexpr std::array few{12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.3646, 2.3060, 2.2622};
+  if (degrees <= few.size()) return few[degrees - 1];
+  constexpr double z = 1.959964;
+  const double n = static_cast<double>(degrees);
+  const double first = (std::pow(z, 3) + z) / 4.0;
+  const double second = (5.0 * std::pow(z, 5) + 16.0 * std::pow(z, 3) + 3.0 * z) / 96.0;
+  const double third =
+      (3.0 * std::pow(z, 7) + 19.0 * std::pow(z, 5) + 17.0 * std::pow(z, 3) - 15.0 * z) / 384.0;
+  return z + first / n + second / (n * n) + third / (n * n * n);
 }
 
-/// The interval of `statistic(rounds, frames)` under resampling of the index lists handed to it.
-template <typename Statistic>
-Estimate bootstrap(std::size_t rounds, std::size_t frames, bool resample_frames,
-                   Statistic&& statistic) {
+/// `value` with Student's interval of the rounds' figures, of which there are two or more: over
+/// their logarithms, or, if one is 0, over themselves. The value is not their mean; the interval
+/// reaches it.
+Estimate with_student_interval(double value, std::vector<double> figures) {
+  const bool is_log = std::ranges::all_of(figures, [](double figure) { return figure > 0.0; });
+  const auto count = static_cast<double>(figures.size());
+  double mean = 0.0;
+  // Figures that are alike must give no width at all: 0 is exact only about one of them.
+  const double origin = is_log ? std::log(figures.front()) : figures.front();
+  for (double& figure : figures) {
+    figure = (is_log ? std::log(figure) : figure) - origin;
+    mean += figure / count;
+  }
+  double squares = 0.0;
+  for (const double figure : figures) squares += (figure - mean) * (figure - mean);
+  const double half = student_95(figures.size() - 1) * std::sqrt(squares / (count - 1.0) / count);
+  // Without spread the bounds are the figures', which the way through logarithms would round.
+  if (!(half > 0.0) && mean == 0.0) return {value, value, value};
+  double low = origin + mean - half;
+  double high = origin + mean + half;
+  low = is_log ? std::exp(low) : std::max(0.0, low);
+  high = is_log ? std::exp(high) : high;
+  return {value, std::min(low, value), std::max(high, value)};
+}
+
+/// Of one round: `value`, the median of its frames, with the bootstrap's interval over them.
+Estimate with_interval_of_frames(double value, const std::vector<double>& frames) {
   Random random(bootstrap_seed);
-  std::vector<std::size_t> round_indices(rounds);
-  std::vector<std::size_t> frame_indices(frames);
-  draw_indices(random, false, round_indices);
-  draw_indices(random, false, frame_indices);
-  Estimate estimate;
-  estimate.value = statistic(round_indices, frame_indices);
+  std::vector<double> drawn(frames.size());
   std::vector<double> values;
   values.reserve(resamples);
   for (int i = 0; i < resamples; ++i) {
-    draw_indices(random, true, round_indices);
-    draw_indices(random, resample_frames, frame_indices);
-    const double value = statistic(round_indices, frame_indices);
-    if (!std::isnan(value)) values.push_back(value);
+    for (double& sample : drawn) sample = frames[random.below(frames.size())];
+    values.push_back(median_in_place(drawn));
   }
-  estimate.low = quantile(values, 0.025);
-  estimate.high = quantile(std::move(values), 0.975);
-  return estimate;
+  return {value, quantile(values, 0.025), quantile(values, 0.975)};
+}
+
+/// `value` with the interval that the samples of each round give it; rounds without any do not
+/// count.
+Estimate with_interval(double value, const SampleGrid& rounds) {
+  std::vector<double> medians;
+  const RoundSamples* last = nullptr;
+  for (const RoundSamples& round : rounds) {
+    if (round.empty()) continue;
+    medians.push_back(median(round));
+    last = &round;
+  }
+  if (medians.empty()) return Estimate::none();
+  if (medians.size() == 1) return with_interval_of_frames(value, *last);
+  return with_student_interval(value, std::move(medians));
 }
 
 bool is_empty(const SampleGrid& rounds) { return rounds.empty() || rounds.front().empty(); }
@@ -77,72 +113,47 @@ Estimate median_of_frames(const SampleGrid& rounds) {
   if (is_empty(rounds)) return Estimate::none();
   std::vector<double> of_frame(rounds.size());
   std::vector<double> of_path(rounds.front().size());
-  return bootstrap(rounds.size(), rounds.front().size(), rounds.size() < few_rounds,
-                   [&](const auto& round_indices, const auto& frame_indices) {
-                     for (std::size_t f = 0; f < frame_indices.size(); ++f) {
-                       for (std::size_t r = 0; r < round_indices.size(); ++r) {
-                         of_frame[r] = rounds[round_indices[r]][frame_indices[f]];
-                       }
-                       of_path[f] = median_in_place(of_frame);
-                     }
-                     return median_in_place(of_path);
-                   });
+  for (std::size_t f = 0; f < of_path.size(); ++f) {
+    for (std::size_t r = 0; r < rounds.size(); ++r) of_frame[r] = rounds[r][f];
+    of_path[f] = median_in_place(of_frame);
+  }
+  return with_interval(median_in_place(of_path), rounds);
 }
 
 Estimate standard_deviation(const SampleGrid& rounds) {
   double mean = 0.0;
-  std::size_t count = 0;
+  double count = 0.0;
   for (const RoundSamples& round : rounds) {
-    count += round.size();
+    count += static_cast<double>(round.size());
     for (const double sample : round) mean += sample;
   }
-  if (count == 0) return Estimate::none();
-  mean /= static_cast<double>(count);
-  // Sums about the mean of all: those of resampled rounds are sums of these.
-  struct Sums {
-    double count = 0.0, first = 0.0, second = 0.0;
-  };
-  std::vector<Sums> sums;
+  if (!(count > 0.0)) return Estimate::none();
+  mean /= count;
+  double all_squares = 0.0;
+  std::vector<double> of_rounds;
   for (const RoundSamples& round : rounds) {
-    Sums& own = sums.emplace_back();
-    own.count = static_cast<double>(round.size());
-    for (const double sample : round) {
-      own.first += sample - mean;
-      own.second += (sample - mean) * (sample - mean);
-    }
+    if (round.empty()) continue;
+    double squares = 0.0;
+    for (const double sample : round) squares += (sample - mean) * (sample - mean);
+    all_squares += squares;
+    of_rounds.push_back(std::sqrt(squares / static_cast<double>(round.size())));
   }
-  return bootstrap(rounds.size(), 1, false, [&](const auto& round_indices, const auto&) {
-    Sums all;
-    for (const std::size_t r : round_indices) {
-      all.count += sums[r].count;
-      all.first += sums[r].first;
-      all.second += sums[r].second;
-    }
-    if (!(all.count > 0.0)) return nan;
-    const double shift = all.first / all.count;
-    return std::sqrt(std::max(0.0, all.second / all.count - shift * shift));
-  });
+  const double value = std::sqrt(all_squares / count);
+  if (of_rounds.size() < 2) return {value, value, value};
+  return with_student_interval(value, std::move(of_rounds));
 }
 
 Estimate paired_ratio(const SampleGrid& numerator, const SampleGrid& denominator) {
-  if (is_empty(numerator)) return Estimate::none();
-  SampleGrid ratios = numerator;
-  for (std::size_t r = 0; r < ratios.size(); ++r) {
-    for (std::size_t f = 0; f < ratios[r].size(); ++f) {
-      ratios[r][f] = denominator[r][f] > 0.0 ? numerator[r][f] / denominator[r][f] : nan;
-    }
-  }
+  SampleGrid ratios(numerator.size());
   std::vector<double> pairs;
-  return bootstrap(ratios.size(), ratios.front().size(), ratios.size() < few_rounds,
-                   [&](const auto& round_indices, const auto& frame_indices) {
-                     pairs.clear();
-                     for (const std::size_t r : round_indices) {
-                       for (const std::size_t f : frame_indices) {
-                         if (!std::isnan(ratios[r][f])) pairs.push_back(ratios[r][f]);
-                       }
-                     }
-                     return median_in_place(pairs);
-                   });
+  for (std::size_t r = 0; r < ratios.size(); ++r) {
+    for (std::size_t f = 0; f < numerator[r].size(); ++f) {
+      if (!(denominator[r][f] > 0.0)) continue;
+      ratios[r].push_back(numerator[r][f] / denominator[r][f]);
+    }
+    pairs.insert(pairs.end(), ratios[r].begin(), ratios[r].end());
+  }
+  return with_interval(median_in_place(pairs), ratios);
 }
 
 }  // namespace vislab

@@ -13,7 +13,7 @@ namespace vislab {
 
 /// Statistics over all frames; each frame counts with the median of its rounds.
 struct TimeSummary {
-  Estimate median;              // of the frames; the interval comes from resampling rounds
+  Estimate median;              // of the frames; the interval is that of the rounds
   double p95 = 0.0, p99 = 0.0;  // over all samples of all rounds
   double worst = 0.0;
   /// Standard deviation of all samples but the first of each round, when nothing is known yet of

@@ -3,7 +3,7 @@
 //
 // A round runs both sides, in an order drawn anew, so that whatever else the machine does falls on
 // both; the ratio of a round is ours / theirs, and what is reported is the median of the rounds'
-// ratios with a 95 % bootstrap interval. Google Benchmark runs the rounds and brings its flags
+// ratios with a 95 % interval. Google Benchmark runs the rounds and brings its flags
 // (--benchmark_filter and so on).
 #pragma once
 

@@ -68,7 +68,7 @@ int show_queries(const Lab& lab, const ShowCall& call);
 std::size_t require_frame(const Path& path, int frame);
 
 /// Two chains in every block of the results that has both, then over all blocks of each device: is
-/// `a` faster or slower (ratio of frame_ms, paired by round, with its bootstrap 95 % interval;
+/// `a` faster or slower (ratio of frame_ms, paired by round, with its 95 % interval;
 /// undecided if that reaches 1, or what "none" against itself shows), and has it more or fewer
 /// undisputed errors? Throws InputError that says what to run if no block has both.
 int compare(const Lab& lab, const std::string& a, const std::string& b,
