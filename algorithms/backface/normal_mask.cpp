@@ -14,15 +14,14 @@
 //   backface.polygon. Blocks outside of the view are tested by corners that enclose them; those
 //   that reach beside or behind the eye are kept.
 // Cost: O(candidate triangles) look-ups, 16 to 64 at a time; one placing a block; and for each
-//   linear part of transforms up to (sectors + 1)^2 tests of all 6 (n + 1)^2 corners of classes,
-//   about 0.5 us each. Memory: 2 bytes a triangle of a mesh and 24 a block.
-// Limits: n is 18 at most, because two bytes tell no more classes apart. For normals in all
-//   directions finds .62 .48 .36 .18 .07 of the back faces in views of 30, 45, 60, 90, 120 degrees
-//   with one sector and n = 16; .86 .82 .78 .71 .65 with 4 x 4 and .90 .88 .86 .82 .79 with 8 x 8.
-//   Where corners of the view fall exactly on corners of classes, as in a view of 90 degrees along
-//   an axis of the mesh, these are edge-on and decide nothing (.16 with one sector). Small objects
-//   that are turned each in its own way pay for masks of their own. Triangles that are stored far
-//   from their neighbours make blocks that straddle sectors.
+//   linear part of transforms up to (sectors + 1)^2 tests of all 6 (n + 1)^2 corners of classes.
+//   Memory: 2 bytes a triangle of a mesh and 24 a block.
+// Limits: n is 18 at most, because two bytes tell no more classes apart. The wider the
+//   view, the fewer back faces are found; with one sector, as published, few in wide views. Where
+//   corners of the view fall exactly on corners of classes, as in a view of 90 degrees along an
+//   axis of the mesh, these are edge-on and decide nothing. Small objects that are turned each in
+//   its own way pay for masks of their own. Triangles that are stored far from their neighbours
+//   make blocks that straddle sectors.
 // Source: Zhang and Hoff 1997, "Fast backface culling using normal masks"; Zachmann,
 //   Computer-Graphik 2, SS 2012, slides 13-18.
 
@@ -128,10 +127,10 @@ CullerInfo describe() {
       "O(candidate triangles) look-ups of two bytes, and (sectors + 1)^2 tests of all classes for "
       "each linear part of the objects' transforms";
   info.limits =
-      "Finds .86 of the back faces in a view of 60 degrees with 8 x 8 sectors, .36 with one; less "
-      "in wider views and for triangles whose neighbours in the mesh's order lie far away. Small "
-      "objects that are turned each in its own way pay for masks of their own. Keeps meshes that "
-      "are open or cross themselves, and objects around the eye, whole.";
+      "The wider the view, the fewer back faces are found, with one sector few; fewer, too, of "
+      "triangles whose neighbours in the mesh's order lie far away. Small objects that are turned "
+      "each in its own way pay for masks of their own. Keeps meshes that are open or cross "
+      "themselves, and objects around the eye, whole.";
   info.sources = {"Zhang and Hoff 1997, Fast backface culling using normal masks",
                   "Zachmann, Computer-Graphik 2, SS 2012, slides 13-18"};
   return info;

@@ -7,9 +7,9 @@
 //   starts at 0 (reversed), in the thesis smaller is nearer and it starts at 1 (standard).
 // Guarantee: by what is kept. image_exact for float reversed: its steps are 2^-24 of the depth or
 //   less, far below the relative difference that the judge excuses, 1e-4. approximate for the
-//   others, whose steps do not shrink with the depth: surfaces that differ by more change places
-//   beyond 400,000 times the near distance with 32 bits; beyond 1,600 times with 24 bits, and with
-//   float standard, whose steps are 2^-24 near 1; beyond 6 times with 16 bits.
+//   others, whose steps do not shrink with the depth. Near 1 it is 1 - near / z, so that a relative
+//   difference of 1e-4 is 1e-4 near / z there, which is a step of 2^-bits at z = 1e-4 2^bits near:
+//   surfaces that differ by more change places beyond that. Float standard has steps of 2^-24.
 // Cost: O(pixels of all candidates); 16 bytes a pixel here, for depths are held as double.
 // Limits: every surface that covers a pixel costs a test there, seen or not. Needs no order, and
 //   takes interpenetration and cycles as they come.
@@ -47,9 +47,9 @@ CullerInfo describe() {
           "which matters for floats, as they are finest around 0")};
   info.cost = "O(pixels that candidates cover): a test each";
   info.limits =
-      "Every surface in a pixel costs a test, seen or not. 32 bits confuse depths beyond about "
-      "400,000 times the near distance, 24 bits and float standard beyond 1,600 times, 16 bits "
-      "beyond 6 times.";
+      "Every surface in a pixel costs a test, seen or not. Depths that differ by a part in 10,000 "
+      "are confused beyond 2^bits / 10,000 times the near distance, as follows from the steps of "
+      "what is kept; float standard is as 24 bits there.";
   info.sources = {"Textbook chapter 17, Culling (in German), 17.2.1",
                   "Kowalka 2016 (thesis, HAW Hamburg), 2.4.1"};
   return info;
