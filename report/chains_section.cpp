@@ -49,6 +49,9 @@ std::string worth_text(const ChainChoice& choice) {
     case ChainChoice::Worth::nothing:
       break;
   }
+  if (!choice.block->noise.measured()) {
+    return "cannot be told: `none` was not measured against itself";
+  }
   return "no faster than drawing everything, as far as can be told";
 }
 

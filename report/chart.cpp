@@ -460,7 +460,7 @@ class ChartWriter {
 }  // namespace
 
 bool has_time_axis(const BlockSummary& block) {
-  return block.drawn && block.machines.size() <= 1 && block.device_models.size() <= 1 &&
+  return block.drawn && is_of_one_machine(block) && block.device_models.size() <= 1 &&
          std::ranges::any_of(block.cells,
                              [](const CellSummary& cell) { return cell.frame_ms.measured(); });
 }

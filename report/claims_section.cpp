@@ -32,6 +32,13 @@ std::string place_of(const PublishedRow& row, const OwnFigure& own) {
              (row.is_share() ? format_percent(own.reach) : format_number(own.reach)) +
              " there: the scene cannot show more";
   }
+  if (!row.cannot_be_told.empty()) return place + ". " + row.cannot_be_told;
+  if (own.block != nullptr && noise_decides(row, own)) {
+    place += own.block->noise.measured()
+                 ? ". None against itself gives " + format_estimate(own.block->noise) +
+                       " there: the difference may be noise"
+                 : ". There is no control, so all of it may be noise";
+  }
   return place;
 }
 
@@ -45,6 +52,7 @@ std::string own_text(const PublishedRow& row, const OwnFigure& own) {
 
 /// "0.2 to 0.5", "at least 1", "at most 1": what of ours confirms the claim.
 std::string accept_text(const PublishedRow& row) {
+  if (!row.cannot_be_told.empty()) return "–";
   const auto text = [&](double bound) {
     return row.is_share() ? format_percent(bound) : format_number(bound);
   };
@@ -110,6 +118,19 @@ Fields row_fields(const PublishedRow& row, const OwnFigure& own) {
   return fields;
 }
 
+/// Rows that make the same claim of several scenes say only once what they share.
+void shorten_repeated(std::vector<Fields>& rows) {
+  const std::vector<std::string> shared{"published", "table", "accept", "method"};
+  for (std::size_t i = rows.size(); i-- > 1;) {
+    const auto is_same = [&](const std::string& name) {
+      return rows[i].values.at(name) == rows[i - 1].values.at(name);
+    };
+    if (!std::ranges::all_of(shared, is_same)) continue;
+    for (const std::string& name : shared) rows[i].values[name] = "″";
+  }
+  for (Fields& row : rows) row.flag("is_repeated", row.values.at("method") == "″");
+}
+
 using Counts = std::array<std::size_t, 4>;  // by ClaimVerdict
 
 void add_counts(const Counts& counts, const std::string& prefix, Fields& fields) {
@@ -141,7 +162,7 @@ void add_claim_fields(const ReportInput& input, Fields& fields) {
       any |= own.cell != nullptr;
       const ClaimVerdict verdict = verdict_of(row, own);
       ++counts[static_cast<std::size_t>(verdict)];
-      if (!row.cannot_be_told.empty()) {
+      if (row.scene.empty()) {
         untold.push_back(untold_fields(row));
       } else {
         (verdict == ClaimVerdict::not_run ? not_run : rows).push_back(row_fields(row, own));
@@ -150,6 +171,7 @@ void add_claim_fields(const ReportInput& input, Fields& fields) {
     // Where most were run, what is missing is a gap, and stands in the table.
     const bool is_folded = not_run.size() > rows.size();
     if (!is_folded) std::ranges::move(not_run, std::back_inserter(rows));
+    shorten_repeated(rows);
     entry.flag("is_folded", is_folded);
     const bool has_rows = !rows.empty();
     for (std::size_t i = 0; i < counts.size(); ++i) all[i] += counts[i];

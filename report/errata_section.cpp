@@ -263,11 +263,12 @@ void add_errata_fields(const ReportInput& input, const std::filesystem::path& fo
   }
   const auto is_measured = [](const WrongVariant& variant) { return variant.judged > 0; };
   const auto measured = std::ranges::count_if(variants, is_measured);
-  fields.flag("has_errata", measured > 0);
+  fields.flag("has_errata", !input.errata.empty() || !variants.empty());
+  fields.flag("has_unmeasured", measured < std::ssize(variants));
+  fields.flag("has_wrong_variants", !variants.empty());
   fields.values["wrong_count"] = std::to_string(variants.size());
   fields.values["wrong_measured"] = std::to_string(measured);
   fields.values["errata_count"] = std::to_string(input.errata.size());
-  if (measured == 0) return;
   for (const Erratum& erratum : input.errata) {
     Fields row = erratum_fields(erratum);
     if (!erratum.not_shown.empty()) {
@@ -276,12 +277,15 @@ void add_errata_fields(const ReportInput& input, const std::filesystem::path& fo
     }
     row.values["measured"] = measured_text(input, erratum, variants);
     fields.lists["errata"].push_back(std::move(row));
+    if (input.cullers == nullptr) continue;
     const std::vector<Reprint> reprints =
         reprints_of(erratum, input.published, blocks, *input.cullers);
     if (!reprints.empty()) {
       fields.lists["reprints"].push_back(reprint_entry(input, erratum, reprints));
     }
   }
+  fields.flag("has_shown_errata", !fields.lists["errata"].empty());
+  fields.flag("has_figure_errata", !fields.lists["figure_errata"].empty());
   add_museum(variants, fields);
   add_pictures(input, variants, folder, fields);
 }

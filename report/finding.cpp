@@ -24,10 +24,9 @@ bool is_oracle(const CellSummary& cell) {
 }
 
 FindingKind kind_of(const Estimate& ratio, const Estimate& noise) {
-  const double least = noise.measured() ? std::min(1.0, noise.low) : 1.0;
-  const double most = noise.measured() ? std::max(1.0, noise.high) : 1.0;
-  if (ratio.high < least) return FindingKind::saves;
-  if (ratio.low > most) return FindingKind::loses;
+  const Estimate band = noise_band(noise);
+  if (ratio.high < band.low) return FindingKind::saves;
+  if (ratio.low > band.high) return FindingKind::loses;
   return FindingKind::within_noise;
 }
 

@@ -37,7 +37,7 @@ struct Series {
 };
 
 bool is_comparable(const BlockSummary& block) {
-  return block.drawn && block.machines.size() <= 1 && block.device_models.empty();
+  return block.drawn && is_of_one_machine(block) && block.device_models.empty();
 }
 
 bool is_shown(const CellSummary& cell) {

@@ -216,7 +216,7 @@ Fields block_fields(const ReportInput& input, std::size_t index, const DeviceFit
   fields.values["verdict"] = trimmed_to_one_line(
       fill_template(verdict_template, finding_fields(block, title), "verdict.md"));
   fields.flag("undrawn", !block.drawn);
-  fields.flag("mixed_machines", block.machines.size() > 1);
+  fields.flag("mixed_machines", !is_of_one_machine(block));
   fields.values["machine_count"] = std::to_string(block.machines.size());
   const bool charted = !charted_cells(block).empty();
   fields.flag("chart", charted);

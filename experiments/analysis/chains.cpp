@@ -20,11 +20,9 @@ bool is_nearly_right(const CellSummary& cell) {
 }
 
 ChainChoice::Worth worth_of(const BlockSummary& block, const CellSummary& best) {
-  // Without a control the noise is unknown, and none's ratio to itself is 1.
-  const double low = block.noise.measured() ? block.noise.low : 1.0;
-  const double high = block.noise.measured() ? block.noise.high : 1.0;
-  if (best.against_none.high < std::min(low, 1.0)) return ChainChoice::Worth::saves;
-  if (best.against_none.low > std::max(high, 1.0)) return ChainChoice::Worth::loses;
+  const Estimate noise = noise_band(block.noise);
+  if (best.against_none.high < noise.low) return ChainChoice::Worth::saves;
+  if (best.against_none.low > noise.high) return ChainChoice::Worth::loses;
   return ChainChoice::Worth::within_noise;
 }
 
@@ -62,7 +60,7 @@ std::vector<ChainChoice> choose_chains(const std::vector<BlockSummary>& blocks) 
   std::vector<ChainChoice> choices;
   for (const BlockSummary& block : blocks) {
     // Times of different machines have no common order, nor have modelled and real ones.
-    if (!block.drawn || block.machines.size() > 1 || !block.device_models.empty()) continue;
+    if (!block.drawn || !is_of_one_machine(block) || !block.device_models.empty()) continue;
     std::vector<const CellSummary*> cells;
     for (const CellSummary& cell : block.cells) {
       if (can_be_chosen(cell)) cells.push_back(&cell);

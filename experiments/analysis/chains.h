@@ -17,7 +17,7 @@ constexpr double nearly_right_share = 0.001;
 struct ChainChoice {
   enum class Worth {
     saves,         // the fastest is faster than none, beyond the noise
-    within_noise,  // it cannot be told from none
+    within_noise,  // it cannot be told from none; nor can any without a control
     loses,         // it is slower than none, beyond the noise
     nothing        // no method without an error was timed
   };

@@ -300,7 +300,7 @@ Reprint reprint_of(const PublishedRow& row, const std::string& wrong, const std:
   Reprint reprint;
   reprint.row = &row;
   for (const BlockSummary* block : blocks) {
-    if (!block->device_models.empty() || block->machines.size() > 1) continue;
+    if (!block->device_models.empty() || !is_of_one_machine(*block)) continue;
     if (block->scene != row.scene || (!row.path.empty() && block->path != row.path)) continue;
     if (reprint.block != nullptr && block->frames <= reprint.block->frames) continue;
     const CellSummary* const none = done_cell(*block, "none");

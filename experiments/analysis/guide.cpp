@@ -112,7 +112,7 @@ std::vector<CullerGuide> make_guides(const std::vector<BlockSummary>& blocks) {
   std::map<Culls, Measured> kinds;
   for (const BlockSummary& block : blocks) {
     // Times of different machines have no common order, nor have modelled and real ones.
-    if (block.machines.size() > 1 || !block.device_models.empty()) continue;
+    if (!is_of_one_machine(block) || !block.device_models.empty()) continue;
     for (auto& [culls, cells] : candidates_of(block)) {
       // Where nothing can be left out (meshes that are not solid, to cullers of back faces) the
       // least cost is that of noise.

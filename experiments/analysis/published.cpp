@@ -109,13 +109,17 @@ PublishedRow read_row(const toml::table& table, double tolerance, const Registry
     row.with_fps = frames_a_second(table, "with_fps", file);
   }
   if (const auto why = value_of<std::string>(table, "cannot_be_told", "a text", file)) {
-    for (const char* key : {"accept", "metric", "scene", "path", "device", "culler", "against",
-                            "against_scene", "against_path"}) {
+    const bool has_figure = row.published.empty() && table.contains("scene");
+    for (const std::string_view key : {"accept", "metric", "scene", "path", "device", "culler",
+                                       "against", "against_scene", "against_path"}) {
+      if (has_figure && (key == "scene" || key == "path" || key == "culler")) continue;
       if (table.contains(key)) {
-        throw InputError(place(file, table) + ": a row that cannot be told has no " + key);
+        throw InputError(place(file, table) + ": a row that cannot be told has no " +
+                         std::string(key));
       }
     }
     row.cannot_be_told = *why;
+    if (has_figure) read_place(table, registry, file, row);
     return row;
   }
   read_place(table, registry, file, row);
@@ -252,6 +256,46 @@ auto weight_of(const BlockSummary& block) {
   return std::pair(block.frames, block.viewport.width * block.viewport.height);
 }
 
+/// Is the row's figure made of times that a clock measured? Those of a modelled device repeat.
+bool is_wall_time(const PublishedRow& row, const BlockSummary& block) {
+  using enum PublishedRow::Metric;
+  const bool is_device_clock = !block.device_models.empty();
+  switch (row.metric) {
+    case frame_ms:
+      return !is_device_clock;
+    case cull_us:
+    case decision_share:
+      return true;
+    case culled:
+      return false;
+    case named:
+      break;
+  }
+  const std::string& name = row.metric_name;
+  if (name == "build_ms" || name == "update_us") return true;
+  return !is_device_clock && (name == "draw_ms" || name == "frame_ms_deviation");
+}
+
+/// The figure with an interval as wide as the noise of the block's times asks for.
+Estimate with_noise(const PublishedRow& row, const OwnFigure& own) {
+  if (own.block == nullptr || !is_wall_time(row, *own.block)) return own.ratio;
+  const Estimate noise = noise_band(own.block->noise);
+  return {own.ratio.value, own.ratio.low * noise.low, own.ratio.high * noise.high};
+}
+
+ClaimVerdict verdict_of(const PublishedRow& row, const OwnFigure& own, const Estimate& figure) {
+  if (!row.cannot_be_told.empty()) return ClaimVerdict::cannot_be_told;
+  if (own.cell == nullptr) return ClaimVerdict::not_run;
+  if (figure.low >= row.accept.low && figure.high <= row.accept.high) {
+    return ClaimVerdict::confirmed;
+  }
+  if (own.is_out_of_reach(row)) return ClaimVerdict::cannot_be_told;
+  if (figure.high < row.accept.low || figure.low > row.accept.high) {
+    return ClaimVerdict::not_confirmed;
+  }
+  return ClaimVerdict::cannot_be_told;
+}
+
 }  // namespace
 
 std::vector<PublishedFigures> load_published(const fs::path& folder, const Registry& registry) {
@@ -268,7 +312,7 @@ std::vector<PublishedFigures> load_published(const fs::path& folder, const Regis
 
 OwnFigure own_figure(const PublishedRow& row, const std::vector<BlockSummary>& blocks) {
   OwnFigure own;
-  if (!row.cannot_be_told.empty()) return own;
+  if (row.scene.empty()) return own;
   for (const BlockSummary& block : blocks) {
     // The times of a modelled device are nobody's to compare with who does not ask for it.
     if (row.device.empty() ? !block.device_models.empty() : block.device != row.device) continue;
@@ -300,17 +344,11 @@ std::string to_string(ClaimVerdict verdict) {
 }
 
 ClaimVerdict verdict_of(const PublishedRow& row, const OwnFigure& own) {
-  if (!row.cannot_be_told.empty()) return ClaimVerdict::cannot_be_told;
-  if (own.cell == nullptr) return ClaimVerdict::not_run;
-  const Estimate& figure = own.ratio;
-  if (figure.low >= row.accept.low && figure.high <= row.accept.high) {
-    return ClaimVerdict::confirmed;
-  }
-  if (own.is_out_of_reach(row)) return ClaimVerdict::cannot_be_told;
-  if (figure.high < row.accept.low || figure.low > row.accept.high) {
-    return ClaimVerdict::not_confirmed;
-  }
-  return ClaimVerdict::cannot_be_told;
+  return verdict_of(row, own, with_noise(row, own));
+}
+
+bool noise_decides(const PublishedRow& row, const OwnFigure& own) {
+  return verdict_of(row, own) != verdict_of(row, own, own.ratio);
 }
 
 }  // namespace vislab

@@ -28,12 +28,15 @@
 //   against_path = "hares_walk"    and the same path. Not for times, which can be set beside each
 //                                  other only within the same rounds
 //   cannot_be_told = "…"           instead of accept, metric, scene, path, device, culler and
-//                                  against: why nothing here can stand beside the figure
+//                                  against: why nothing here can stand beside the figure. With
+//                                  frames a second, scene, path and culler may stay: ours is shown
+//                                  beside theirs, and gets no verdict
 //
 // The rule: a claim is confirmed where the whole interval of our figure lies in `accept`, not
 // confirmed where all of it lies outside, and cannot be told where it does both; nor where it lies
 // below and our scene cannot show more, because not even the oracle, which draws nothing but what
-// is visible, gets as far as `accept`.
+// is visible, gets as far as `accept`. Intervals of wall times are first widened by what none gives
+// against itself in that block (noise_band), for so much two of the same may differ.
 #pragma once
 
 #include <filesystem>
@@ -54,7 +57,7 @@ struct PublishedRow {
   std::string short_culler = {}, short_against = {};  // the same as tables show them
   std::string published = {};                         // instead of frames a second
   enum class Metric { frame_ms, cull_us, culled, decision_share, named } metric = Metric::frame_ms;
-  std::string cannot_be_told = {};  // if not empty, the row has no figure of ours
+  std::string cannot_be_told = {};  // if not empty, there is no verdict; no `scene`: nor a figure
   std::string metric_name = {};     // of Metric::named, as CellSummary::metric has it
   std::string device = {};          // as parse_device writes it; "": any real one
   std::string against_scene = {},
@@ -119,5 +122,8 @@ std::string to_string(ClaimVerdict verdict);
 
 /// By the rule at the head of this file; `own` is the row's.
 ClaimVerdict verdict_of(const PublishedRow& row, const OwnFigure& own);
+
+/// Would the verdict be another if times had no noise?
+bool noise_decides(const PublishedRow& row, const OwnFigure& own);
 
 }  // namespace vislab

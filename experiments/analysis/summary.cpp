@@ -383,13 +383,20 @@ bool is_free_of_errors(const CellSummary& cell) {
   return cell.false_jittered == 0 && cell.false_objects == 0;
 }
 
+bool is_of_one_machine(const BlockSummary& block) { return block.machines.size() <= 1; }
+
+Estimate noise_band(const Estimate& noise) {
+  if (!noise.measured()) return {1.0, 0.0, std::numeric_limits<double>::infinity()};
+  return {noise.value, std::min(1.0, noise.low), std::max(1.0, noise.high)};
+}
+
 std::vector<BlockSummary> summarise(const std::vector<JudgedCell>& cells) {
   std::map<decltype(block_key(cells.front().cell)), std::vector<const JudgedCell*>> blocks;
   for (const JudgedCell& cell : cells) blocks[block_key(cell.cell)].push_back(&cell);
   std::vector<const std::vector<const JudgedCell*>*> members_of;
   for (const auto& [key, members] : blocks) members_of.push_back(&members);
   std::vector<BlockSummary> summaries(members_of.size());
-  // Resampling thousands of cells takes seconds; blocks have nothing to do with each other.
+  // Summing up thousands of cells takes seconds; blocks have nothing to do with each other.
   tbb::parallel_for(std::size_t{0}, members_of.size(),
                     [&](std::size_t i) { summaries[i] = summarise_block(*members_of[i]); });
   return summaries;

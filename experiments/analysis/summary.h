@@ -113,7 +113,8 @@ struct BlockSummary {
   std::vector<GpuModel> device_models;
   /// Truth against the unculled image, over all frames.
   std::uint64_t floor_pixels = 0, floor_disputed_px = 0, floor_undisputed_px = 0;
-  /// none against its A/A control: how far from 1 the interval reaches is the noise of ratios.
+  /// none against its A/A control: how far from 1 the interval reaches is the noise of ratios. Not
+  /// measured if there is no control.
   Estimate noise;
   std::vector<CellSummary> cells;              // none, the oracles, then by name
   std::map<std::string, std::string> context;  // of the first cell
@@ -123,6 +124,14 @@ struct BlockSummary {
   /// By machine: what drawing and testing cost there, the median over its cells' tables.
   std::map<std::string, CostTable> costs;
 };
+
+/// Were all cells measured on one machine? Times of several have no common order, and are neither
+/// charted nor compared.
+bool is_of_one_machine(const BlockSummary& block);
+
+/// From where to where ratios lie that may be noise: 1, and what none gives against itself. Without
+/// a control (`noise` was not measured) any ratio may be noise: from 0 to infinity.
+Estimate noise_band(const Estimate& noise);
 
 /// A cell and what the present judge makes of it (empty: nothing yet).
 struct JudgedCell {

@@ -65,6 +65,16 @@ TEST(Chains, WhatIsNoFasterThanDrawingEverythingSaysSo) {
   EXPECT_EQ(choices[2].best, nullptr);
 }
 
+TEST(Chains, WithoutAControlNothingIsSaidToSaveOrToLose) {
+  BlockSummary fast = block_with({method("a.b", 0.5, 0.6)});
+  BlockSummary slow = block_with({method("a.b", 1.5, 1.6)});
+  fast.noise = slow.noise = Estimate::none();
+  const std::vector<BlockSummary> blocks{fast, slow};
+  for (const ChainChoice& choice : choose_chains(blocks)) {
+    EXPECT_EQ(choice.worth, ChainChoice::Worth::within_noise);
+  }
+}
+
 TEST(Chains, BlocksWhoseTimesHaveNoCommonOrderAndMethodsThatCannotBeUsedAreLeftOut) {
   BlockSummary machines = block_with({method("a.b", 0.5, 0.6)});
   machines.machines.emplace_back("two");

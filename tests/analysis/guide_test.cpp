@@ -198,6 +198,7 @@ TEST(PublishedRow, SharesAreOfAllTrianglesAndOfTheFrame) {
   row.metric = PublishedRow::Metric::decision_share;
   EXPECT_DOUBLE_EQ(own_figure(row, blocks).ratio.value, 0.08);
   row.cannot_be_told = "the model is not to be had";
+  row.scene.clear();
   EXPECT_EQ(own_figure(row, blocks).cell, nullptr);
 }
 

@@ -36,6 +36,14 @@ TEST(Finding, ASavingWithinTheNoiseIsNone) {
   EXPECT_EQ(find(block).kind, FindingKind::within_noise);
 }
 
+TEST(Finding, WithoutAControlNoSavingIsSaidToBeOne) {
+  BlockSummary block = fabricated_block("plain");
+  block.cells.push_back(fabricated_cell("frustum.flat", 0.5, 0, 1.0));
+  EXPECT_EQ(find(block).kind, FindingKind::saves);
+  block.noise = Estimate::none();
+  EXPECT_EQ(find(block).kind, FindingKind::within_noise);
+}
+
 TEST(Finding, ALossIsSaidToBeOne) {
   BlockSummary block = fabricated_block("made_up");
   block.cells.push_back(fabricated_cell("slow", 1.2, 0, 3.0));

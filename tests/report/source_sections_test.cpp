@@ -7,6 +7,7 @@
 #include "report/errata_section.h"
 #include "report/main_chart.h"
 #include "report/summary_section.h"
+#include "report/template.h"
 #include "tests/report/fabricated.h"
 
 namespace vislab {
@@ -131,11 +132,59 @@ TEST_F(SourceSections, APictureThatCannotBeMadeIsAGapWithItsReason) {
   EXPECT_EQ(fields.lists["errata_pictures_missing"][0].values.at("reason"), "the scene is gone");
 }
 
-TEST_F(SourceSections, WithoutAWrongVariantThereIsNoMuseum) {
+TEST_F(SourceSections, WithoutAMeasuredVariantTheErrataStandThereAsNotRun) {
   input_.blocks[0].cells.pop_back();
   Fields fields;
   add_errata_fields(input_, "", fields);
-  EXPECT_TRUE(fields.lists["has_errata"].empty());
+  EXPECT_EQ(fields.lists["has_errata"].size(), 1U);
+  EXPECT_EQ(fields.values["wrong_measured"], "0");
+  EXPECT_EQ(fields.lists["figure_errata"].size(), 1U);
+  ASSERT_EQ(fields.lists["errata"].size(), 1U);
+  EXPECT_NE(fields.lists["errata"][0].values.at("measured").find("not run"), std::string::npos);
+  ASSERT_FALSE(fields.lists["wrong_families"].empty());
+  for (const Fields& family : fields.lists["wrong_families"]) {
+    for (const Fields& row : family.lists.at("rows")) {
+      EXPECT_EQ(row.values.at("false_px"), "not run");
+    }
+  }
+  const std::string text = fill_template(read_template(std::filesystem::path(VISLAB_SOURCE_DIR) /
+                                                       "report" / "templates" / "errata.md"),
+                                         fields, "errata.md");
+  EXPECT_NE(text.find("vislab run errata"), std::string::npos);
+  EXPECT_NE(text.find("only in words"), std::string::npos);
+}
+
+TEST_F(SourceSections, RowsThatMakeTheSameClaimOfSeveralScenesSayOnceWhatTheyShare) {
+  auto& claims = input_.published[0].rows;
+  claims.insert(claims.begin() + 1, claims[0]);
+  claims[1].what = "the same: another scene";
+  claims.insert(claims.begin() + 2, claims[0]);
+  claims[2].accept = {2.0, 5.0};
+  Fields fields;
+  add_claim_fields(input_, fields);
+  const auto& rows = fields.lists["claim_sources"][0].lists.at("rows");
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[0].values.at("method").find("`frustum.flat`"), 0U);
+  EXPECT_EQ(rows[1].values.at("method"), "″");
+  EXPECT_EQ(rows[1].values.at("published"), "″");
+  EXPECT_EQ(rows[1].values.at("verdict"), "**confirmed**");
+  EXPECT_EQ(rows[2].values.at("method").find("`frustum.flat`"), 0U);
+}
+
+TEST_F(SourceSections, AClaimThatNoiseDecidesSaysSo) {
+  input_.published[0].rows[0].accept = {3.95, 5.0};
+  input_.blocks[0].noise = {1.0, 0.9, 1.1};
+  for (CellSummary& cell : input_.blocks[0].cells) cell.against_none = {0.25, 0.25, 0.25};
+  const auto scene = [&]() {
+    Fields fields;
+    add_claim_fields(input_, fields);
+    const Fields& row = fields.lists["claim_sources"][0].lists.at("rows").at(0);
+    EXPECT_EQ(row.values.at("verdict"), "cannot be told");
+    return row.values.at("scene");
+  };
+  EXPECT_NE(scene().find("None against itself gives 1"), std::string::npos) << scene();
+  input_.blocks[0].noise = Estimate::none();
+  EXPECT_NE(scene().find("no control"), std::string::npos) << scene();
 }
 
 TEST_F(SourceSections, EachClaimHasItsVerdictWithTheFigures) {
@@ -155,7 +204,7 @@ TEST_F(SourceSections, EachClaimHasItsVerdictWithTheFigures) {
 
 TEST_F(SourceSections, AClaimWithoutCellsIsAGapWhereMostWereRunAndElseOneOfANumber) {
   input_.published.push_back(input_.published[0]);
-  for (PublishedRow& row : input_.published[1].rows) row.scene = "elsewhere";
+  input_.published[1].rows[0].scene = "elsewhere";
   input_.published[0].rows.push_back(input_.published[1].rows[0]);
   Fields fields;
   add_claim_fields(input_, fields);
