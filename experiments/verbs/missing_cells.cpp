@@ -11,9 +11,12 @@ namespace {
 /// What tells blocks apart, as their descriptions name it.
 using BlockName = std::tuple<std::string, std::string, int, int, int, std::string, std::uint64_t>;
 
+/// A chain and its number among several of the same: the control is the second none.
+using Place = std::pair<std::string, int>;
+
 struct StoredBlock {
   std::vector<std::string> ids;
-  std::set<std::string> chains;
+  std::set<Place> places;
 };
 
 BlockName name_of(const Block& block) {
@@ -35,10 +38,10 @@ std::pair<BlockName, BlockName> names_of(const ResultCell& cell) {
   return {std::move(name), std::move(all)};
 }
 
-std::set<std::string> planned_chains(const Block& block) {
-  std::set<std::string> chains;
-  for (const BlockCuller& culler : block.cullers) chains.insert(culler.chain);
-  return chains;
+std::set<Place> planned_places(const Block& block) {
+  std::set<Place> places;
+  for (const BlockCuller& culler : block.cullers) places.emplace(culler.chain, culler.replicate);
+  return places;
 }
 
 }  // namespace
@@ -51,19 +54,19 @@ PlannedGaps find_planned_gaps(const std::vector<Matrix>& matrices,
     const auto [name, all] = names_of(*cell);
     for (const BlockName& one : {name, all}) {
       stored[one].ids.push_back(cell->key.id());
-      stored[one].chains.insert(cell->key.chain);
+      stored[one].places.emplace(cell->key.chain, cell->key.replicate);
     }
   }
   PlannedGaps gaps;
-  std::set<std::pair<BlockName, std::string>> told;  // several matrices may plan the same
+  std::set<std::pair<BlockName, Place>> told;  // several matrices may plan the same
   for (const Matrix& matrix : matrices) {
     std::size_t planned = 0;
     std::size_t present = 0;
     for (const Block& block : matrix.blocks) {
       const auto found = stored.find(name_of(block));
-      for (const std::string& chain : planned_chains(block)) {
+      for (const Place& place : planned_places(block)) {
         ++planned;
-        if (found != stored.end() && found->second.chains.contains(chain)) ++present;
+        if (found != stored.end() && found->second.places.contains(place)) ++present;
       }
     }
     if (2 * present <= planned) continue;
@@ -75,13 +78,15 @@ PlannedGaps find_planned_gaps(const std::vector<Matrix>& matrices,
       const BlockName name = name_of(block);
       const auto found = stored.find(name);
       if (found == stored.end()) {
-        if (told.emplace(name, "").second) gaps.blocks.push_back({block.title(), reason});
+        if (told.emplace(name, Place()).second) gaps.blocks.push_back({block.title(), reason});
         continue;
       }
-      for (const std::string& chain : planned_chains(block)) {
-        if (found->second.chains.contains(chain) || !told.emplace(name, chain).second) continue;
+      for (const Place& place : planned_places(block)) {
+        if (found->second.places.contains(place) || !told.emplace(name, place).second) continue;
+        const auto& [chain, replicate] = place;
+        const std::string again = replicate > 0 ? " (again)" : "";
         for (const std::string& id : found->second.ids) {
-          gaps.of_block_with[id].push_back({cullers.short_name(chain), reason});
+          gaps.of_block_with[id].push_back({cullers.short_name(chain) + again, reason});
         }
       }
     }

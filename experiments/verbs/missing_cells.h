@@ -14,7 +14,7 @@ namespace vislab {
 
 /// A chain or a whole block that a matrix plans, and that is not there.
 struct PlannedGap {
-  std::string name;  // the chain's short name, or the block's title
+  std::string name;  // the chain's short name (the control: "none (again)"), or the block's title
   std::string reason;
 };
 

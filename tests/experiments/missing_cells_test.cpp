@@ -73,6 +73,18 @@ TEST_F(MissingCells, ADeletedCellIsAGapOfItsBlock) {
   EXPECT_FALSE(found.of_block_with.contains(cells.back().key.id()));  // of the other scene
 }
 
+TEST_F(MissingCells, ADeletedControlIsAGapOfItsBlock) {
+  std::vector<ResultCell> cells = everything();
+  std::erase_if(cells, [](const ResultCell& cell) {
+    return cell.key.replicate > 0 && cell.scene_source == "one_scene";
+  });
+  const PlannedGaps found = gaps(cells);
+  const auto of_block = found.of_block_with.find(cells.front().key.id());
+  ASSERT_NE(of_block, found.of_block_with.end());
+  ASSERT_EQ(of_block->second.size(), 1U);
+  EXPECT_EQ(of_block->second[0].name, "none (again)");
+}
+
 TEST_F(MissingCells, ABlockThatIsGoneIsNamed) {
   std::vector<ResultCell> cells = everything();
   matrix_.blocks.push_back(matrix_.blocks[0]);
