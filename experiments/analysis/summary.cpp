@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include "experiments/analysis/errors.h"
 #include "experiments/analysis/modelled_time.h"
 
 namespace vislab {
@@ -376,18 +377,13 @@ double CellSummary::metric(const std::string& name) const {
 }
 
 bool is_free_of_errors(const CellSummary& cell) {
-  if (!cell.judged || cell.false_px > 0 || (cell.drawn && cell.image_px > 0)) return false;
-  if (cell.paints && cell.surface_px > 0) return false;
-  if (cell.guarantee == Guarantee::image_exact) return true;
-  if (cell.regions && cell.regions->misses > 0) return false;
-  return cell.false_jittered == 0 && cell.false_objects == 0;
-}
-
-bool is_of_one_machine(const BlockSummary& block) { return block.machines.size() <= 1; }
-
-Estimate noise_band(const Estimate& noise) {
-  if (!noise.measured()) return {1.0, 0.0, std::numeric_limits<double>::infinity()};
-  return {noise.value, std::min(1.0, noise.low), std::max(1.0, noise.high)};
+  if (!cell.judged) return false;
+  const bool between_pixels = counts_between_pixels({&cell.guarantee, 1});
+  const ErrorCounts counts = error_counts(cell);
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] > 0 && (between_pixels || !error_kinds[i].between_pixels)) return false;
+  }
+  return true;
 }
 
 std::vector<BlockSummary> summarise(const std::vector<JudgedCell>& cells) {

@@ -1,11 +1,14 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iostream>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 
 #include "common/scene/error.h"
+#include "experiments/analysis/errors.h"
 #include "experiments/matrix/matrix.h"
 #include "experiments/verbs/present_results.h"
 #include "experiments/verbs/table.h"
@@ -82,29 +85,43 @@ std::string speed_verdict(const Estimate& ratio, const Estimate& noise) {
   return "undecided";
 }
 
-/// Undisputed errors of a cell, or of several.
-struct Errors {
-  std::uint64_t false_px = 0, false_objects = 0, image_px = 0;
-
-  void add(const Errors& other) {
-    false_px += other.false_px;
-    false_objects += other.false_objects;
-    image_px += other.image_px;
-  }
-};
+/// Errors of a cell, or of several. Empty where a kind does not apply to any of them.
+using Errors = std::array<std::optional<std::uint64_t>, error_kinds.size()>;
 
 Errors errors_of(const CellSummary& cell) {
-  return {cell.false_px, cell.false_objects, cell.drawn ? cell.image_px : 0};
+  Errors errors;
+  const ErrorCounts counts = error_counts(cell);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (cell.judged && !std::isnan(cell.metric(error_kinds[i].metric))) errors[i] = counts[i];
+  }
+  return errors;
+}
+
+void add(Errors& sum, const Errors& errors) {
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    if (errors[i]) sum[i] = sum[i].value_or(0) + *errors[i];
+  }
 }
 
 /// Of a against b: "mixed" if some counts are more and others fewer.
-std::string error_verdict(const Errors& a, const Errors& b) {
-  const bool more =
-      a.false_px > b.false_px || a.false_objects > b.false_objects || a.image_px > b.image_px;
-  const bool fewer =
-      a.false_px < b.false_px || a.false_objects < b.false_objects || a.image_px < b.image_px;
+std::string error_verdict(const Errors& a, const Errors& b, bool between_pixels) {
+  bool more = false;
+  bool fewer = false;
+  for (std::size_t i = 0; i < error_kinds.size(); ++i) {
+    if (error_kinds[i].between_pixels && !between_pixels) continue;
+    more |= a[i].value_or(0) > b[i].value_or(0);
+    fewer |= a[i].value_or(0) < b[i].value_or(0);
+  }
   if (more && fewer) return "mixed";
   return more ? "more" : fewer ? "fewer" : "same";
+}
+
+void add_columns(std::vector<TableValue>& row, const Errors& a, const Errors& b) {
+  for (std::size_t i = 0; i < error_kinds.size(); ++i) {
+    for (const auto& count : {a[i], b[i]}) {
+      row.push_back(count ? TableValue(*count) : TableValue());
+    }
+  }
 }
 
 const CellSummary* find_cell(const BlockSummary& block, const std::string& chain) {
@@ -131,6 +148,7 @@ struct Overall {
   std::vector<Estimate> ratios;
   std::vector<Estimate> noises;
   Errors a, b;
+  bool between_pixels = false;  // what is lost there counts
   std::size_t blocks = 0, judged = 0;
 
   /// The geometric mean of the blocks' ratios: of these blocks, not of scenes at large.
@@ -236,7 +254,7 @@ std::string sentence(const std::string& a, const std::string& b, const std::stri
   if (overall.judged == 0) {
     text << "errors are not judged";
   } else {
-    const std::string errors = error_verdict(overall.a, overall.b);
+    const std::string errors = error_verdict(overall.a, overall.b, overall.between_pixels);
     text << (errors == "same"    ? "the same errors"
              : errors == "mixed" ? "more errors of one kind, fewer of another"
                                  : errors + " errors");
@@ -264,33 +282,15 @@ int compare(const Lab& lab, const std::string& a, const std::string& b,
   std::map<std::string, const ResultCell*> by_id;
   for (const JudgedCell& judged : cells) by_id[judged.cell.key.id()] = &judged.cell;
 
-  Table table({"scene",
-               "path",
-               "resolution",
-               "device",
-               "blocks",
-               "a",
-               "b",
-               "speed",
-               "ratio",
-               "ratio_low",
-               "ratio_high",
-               "noise_low",
-               "noise_high",
-               "frame_ms_a",
-               "frame_ms_p99_a",
-               "frame_ms_b",
-               "frame_ms_p99_b",
-               "errors",
-               "false_px_a",
-               "false_px_b",
-               "image_px_a",
-               "image_px_b",
-               "false_objects_a",
-               "false_objects_b",
-               "over_a",
-               "over_b",
-               "note"});
+  std::vector<std::string> columns{
+      "scene",      "path",       "resolution",     "device",     "blocks",         "a",
+      "b",          "speed",      "ratio",          "ratio_low",  "ratio_high",     "noise_low",
+      "noise_high", "frame_ms_a", "frame_ms_p99_a", "frame_ms_b", "frame_ms_p99_b", "errors"};
+  for (const ErrorKind& kind : error_kinds) {
+    for (const char* side : {"_a", "_b"}) columns.push_back(kind.metric + std::string(side));
+  }
+  columns.insert(columns.end(), {"over_a", "over_b", "note"});
+  Table table(columns);
   std::map<std::string, Overall> by_device;
   const std::vector<BlockSummary> blocks = summarise(cells);
   for (const BlockSummary& block : blocks) {
@@ -301,7 +301,9 @@ int compare(const Lab& lab, const std::string& a, const std::string& b,
     const bool paired = ratio.measured();
     if (!paired) ratio = ratio_through_none(*in_a, *in_b);
     const bool both_judged = in_a->judged && in_b->judged;
-    const bool both_drawn = in_a->drawn && in_b->drawn;
+    const bool between_pixels = counts_between_pixels(std::array{in_a->guarantee, in_b->guarantee});
+    const Errors of_a = errors_of(*in_a);
+    const Errors of_b = errors_of(*in_b);
 
     Overall& overall = by_device[block.device];
     ++overall.blocks;
@@ -311,42 +313,36 @@ int compare(const Lab& lab, const std::string& a, const std::string& b,
     }
     if (both_judged) {
       ++overall.judged;
-      overall.a.add(errors_of(*in_a));
-      overall.b.add(errors_of(*in_b));
+      add(overall.a, of_a);
+      add(overall.b, of_b);
+      overall.between_pixels |= between_pixels;
     }
-    const auto judged = [&](const CellSummary& cell, auto value) {
-      return cell.judged ? TableValue(value) : TableValue();
+    const auto over = [](const CellSummary& cell) {
+      return cell.judged ? TableValue(cell.over) : TableValue();
     };
-    const auto image = [&](const CellSummary& cell) {
-      return both_drawn ? judged(cell, cell.image_px) : TableValue();
-    };
-    table.add({block.scene,
-               block.path,
-               std::to_string(block.viewport.width) + "x" + std::to_string(block.viewport.height),
-               block.device,
-               std::uint64_t{1},
-               in_a->culler,
-               in_b->culler,
-               speed_verdict(ratio, block.noise),
-               ratio.value,
-               ratio.low,
-               ratio.high,
-               block.noise.low,
-               block.noise.high,
-               in_a->frame_ms.median.value,
-               in_a->frame_ms.p99,
-               in_b->frame_ms.median.value,
-               in_b->frame_ms.p99,
-               judged_text(both_judged, error_verdict(errors_of(*in_a), errors_of(*in_b))),
-               judged(*in_a, in_a->false_px),
-               judged(*in_b, in_b->false_px),
-               image(*in_a),
-               image(*in_b),
-               judged(*in_a, in_a->false_objects),
-               judged(*in_b, in_b->false_objects),
-               judged(*in_a, in_a->over),
-               judged(*in_b, in_b->over),
-               note_on(*in_a, *in_b, paired, ratio.measured())});
+    std::vector<TableValue> row{
+        block.scene,
+        block.path,
+        std::to_string(block.viewport.width) + "x" + std::to_string(block.viewport.height),
+        block.device,
+        std::uint64_t{1},
+        in_a->culler,
+        in_b->culler,
+        speed_verdict(ratio, block.noise),
+        ratio.value,
+        ratio.low,
+        ratio.high,
+        block.noise.low,
+        block.noise.high,
+        in_a->frame_ms.median.value,
+        in_a->frame_ms.p99,
+        in_b->frame_ms.median.value,
+        in_b->frame_ms.p99,
+        judged_text(both_judged, error_verdict(of_a, of_b, between_pixels))};
+    add_columns(row, of_a, of_b);
+    row.insert(row.end(),
+               {over(*in_a), over(*in_b), note_on(*in_a, *in_b, paired, ratio.measured())});
+    table.add(std::move(row));
   }
   if (by_device.empty()) {
     throw InputError(
@@ -358,40 +354,29 @@ int compare(const Lab& lab, const std::string& a, const std::string& b,
     const Estimate ratio = Overall::mean(overall.ratios);
     const Estimate noise = Overall::mean(overall.noises);
     const std::string speed = speed_verdict(ratio, noise);
-    const bool judged = overall.judged > 0;
-    const auto count = [&](std::uint64_t value) {
-      return judged ? TableValue(value) : TableValue();
-    };
-    const auto image = [&](std::uint64_t value) {
-      return device == "none" ? TableValue() : count(value);
-    };
-    table.add({{},
-               {},
-               {},
-               device,
-               std::uint64_t{overall.blocks},
-               name_a,
-               name_b,
-               speed,
-               ratio.value,
-               ratio.low,
-               ratio.high,
-               noise.low,
-               noise.high,
-               {},
-               {},
-               {},
-               {},
-               judged_text(judged, error_verdict(overall.a, overall.b)),
-               count(overall.a.false_px),
-               count(overall.b.false_px),
-               image(overall.a.image_px),
-               image(overall.b.image_px),
-               count(overall.a.false_objects),
-               count(overall.b.false_objects),
-               {},
-               {},
-               "all blocks"});
+    std::vector<TableValue> row{
+        {},
+        {},
+        {},
+        device,
+        std::uint64_t{overall.blocks},
+        name_a,
+        name_b,
+        speed,
+        ratio.value,
+        ratio.low,
+        ratio.high,
+        noise.low,
+        noise.high,
+        {},
+        {},
+        {},
+        {},
+        judged_text(overall.judged > 0,
+                    error_verdict(overall.a, overall.b, overall.between_pixels))};
+    add_columns(row, overall.a, overall.b);
+    row.insert(row.end(), {{}, {}, "all blocks"});
+    table.add(std::move(row));
     answer += sentence(name_a, name_b, device, overall, ratio, speed) + "\n";
   }
   table.print(std::cout, json);

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+
+#include "experiments/analysis/errors.h"
 
 namespace vislab {
 namespace {
@@ -369,6 +372,43 @@ TEST(Summary, TheErrorFloorIsThatOfTheFramesNotOfEachCell) {
 }
 
 TEST(Summary, NoCellsGiveNoBlocks) { EXPECT_TRUE(summarise({}).empty()); }
+
+TEST(Errors, EachKindIsFoundInTheCellsThatItAppliesTo) {
+  CellSummary cell;
+  cell.judged = cell.drawn = cell.paints = true;
+  cell.regions.emplace();
+  EXPECT_TRUE(is_free_of_errors(cell));
+  const std::array<std::uint64_t*, error_kinds.size()> counts{
+      &cell.false_px,      &cell.image_px,       &cell.surface_px,
+      &cell.false_objects, &cell.false_jittered, &cell.regions->misses};
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    *counts[i] = 3;
+    ErrorCounts expected{};
+    expected[i] = 3;
+    EXPECT_EQ(error_counts(cell), expected) << error_kinds[i].metric;
+    for (const Guarantee guarantee :
+         {Guarantee::conservative, Guarantee::image_exact, Guarantee::approximate}) {
+      cell.guarantee = guarantee;
+      const bool counted = guarantee != Guarantee::image_exact || !error_kinds[i].between_pixels;
+      EXPECT_EQ(is_free_of_errors(cell), !counted)
+          << error_kinds[i].metric << ", " << to_string(guarantee);
+    }
+    *counts[i] = 0;
+  }
+  cell.image_px = cell.surface_px = 3;
+  cell.drawn = cell.paints = false;
+  EXPECT_EQ(error_counts(cell), ErrorCounts{});
+}
+
+TEST(Errors, BetweenPixelsThePromiseOfTheStricterSideCounts) {
+  const auto counts = [](Guarantee a, Guarantee b) {
+    return counts_between_pixels(std::array{a, b});
+  };
+  EXPECT_TRUE(counts(Guarantee::conservative, Guarantee::image_exact));
+  EXPECT_TRUE(counts(Guarantee::approximate, Guarantee::erroneous));
+  EXPECT_FALSE(counts(Guarantee::image_exact, Guarantee::image_exact));
+  EXPECT_FALSE(counts(Guarantee::erroneous, Guarantee::image_exact));
+}
 
 }  // namespace
 }  // namespace vislab

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "experiments/results/files.h"
 #include "experiments/results/store.h"
 #include "tests/experiments/program.h"
 #include "tests/experiments/temporary_folder.h"
@@ -117,6 +118,48 @@ TEST_F(Compare, SaysWhichHasMoreErrors) {
   }
   EXPECT_EQ(compare("none", "frustum.wrong").at(1).at("errors"), "fewer");
   EXPECT_EQ(compare("frustum.flat", "frustum.bvh").at(1).at("errors"), "same");
+}
+
+TEST_F(Compare, WhatIsLostBetweenPixelsCountsForWhoPromisesAll) {
+  // As if frustum.flat had lost a sample between the centres of pixels.
+  const ResultStore store = ResultStore::open(results());
+  for (const ResultCell& cell : store.load_all()) {
+    if (!cell.key.chain.starts_with("frustum.flat")) continue;
+    const fs::path file = fs::path(results()) / "verdicts" / (cell.key.id() + ".json");
+    nlohmann::json verdicts = nlohmann::json::parse(read_file(file));
+    verdicts.at("frames").at(0).at("false_jittered") = 1;
+    write_file(file, verdicts.dump());
+  }
+  for (const nlohmann::json& row : compare("frustum.flat", "frustum.bvh")) {
+    EXPECT_EQ(row.at("errors"), "more");
+    EXPECT_EQ(row.at("false_jittered_a"), 1);
+    EXPECT_EQ(row.at("false_jittered_b"), 0);
+    EXPECT_EQ(row.at("false_px_a"), 0);
+  }
+}
+
+TEST(CompareImages, PixelsThatAMethodPaintsWronglyAreErrors) {
+  const TemporaryFolder folder;
+  const std::string results = folder.path() / "results";
+  const std::string matrix =
+      folder.write("matrix.toml",
+                   "rounds = 1\n[lists]\nculler = [\"surface.span_buffer\", \"surface.bsp\"]\n"
+                   "scene = [\"crossing_quads\"]\nresolution = [\"128x128\"]\nframes = [1]\n");
+  const ProgramResult run =
+      run_vislab({"run", matrix, "--quiet", "--threads", "1", "--results", results});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  // Each has kept what is seen; one has given pixels of it to the wrong quad.
+  const ProgramResult result =
+      run_vislab({"compare", "surface.span_buffer", "surface.bsp", "--results", results, "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  std::istringstream rows(result.out);
+  for (std::string line; std::getline(rows, line);) {
+    const nlohmann::json row = nlohmann::json::parse(line);
+    EXPECT_EQ(row.at("errors"), "more");
+    EXPECT_GT(row.at("surface_px_a"), 0);
+    EXPECT_EQ(row.at("surface_px_b"), 0);
+    EXPECT_EQ(row.at("false_px_a"), 0);
+  }
 }
 
 TEST_F(Compare, ChainsOfDifferentRunsAreComparedThroughNone) {
