@@ -386,6 +386,13 @@ bool is_free_of_errors(const CellSummary& cell) {
   return true;
 }
 
+bool is_of_one_machine(const BlockSummary& block) { return block.machines.size() <= 1; }
+
+Estimate noise_band(const Estimate& noise) {
+  if (!noise.measured()) return {1.0, 0.0, std::numeric_limits<double>::infinity()};
+  return {noise.value, std::min(1.0, noise.low), std::max(1.0, noise.high)};
+}
+
 std::vector<BlockSummary> summarise(const std::vector<JudgedCell>& cells) {
   std::map<decltype(block_key(cells.front().cell)), std::vector<const JudgedCell*>> blocks;
   for (const JudgedCell& cell : cells) blocks[block_key(cell.cell)].push_back(&cell);
