@@ -75,13 +75,12 @@ Estimate ratio_through_none(const CellSummary& a, const CellSummary& b) {
 }
 
 /// Slower or faster only if the interval says so, and lies farther from 1 than "none" against
-/// itself does.
+/// itself does; undecided without that control.
 std::string speed_verdict(const Estimate& ratio, const Estimate& noise) {
   if (!ratio.measured()) return "undecided";
-  const double noise_low = noise.measured() ? std::min(1.0, noise.low) : 1.0;
-  const double noise_high = noise.measured() ? std::max(1.0, noise.high) : 1.0;
-  if (ratio.high < noise_low) return "faster";
-  if (ratio.low > noise_high) return "slower";
+  const Estimate band = noise_band(noise);
+  if (ratio.high < band.low) return "faster";
+  if (ratio.low > band.high) return "slower";
   return "undecided";
 }
 
@@ -130,14 +129,19 @@ const CellSummary* find_cell(const BlockSummary& block, const std::string& chain
   return cell == block.cells.end() ? nullptr : &*cell;
 }
 
+bool has_failed(const CellSummary& cell) { return cell.status == ResultCell::Status::failed; }
+
 /// Why a block has no ratio, or what is to be known of it.
-std::string note_on(const CellSummary& a, const CellSummary& b, bool paired, bool measured) {
+std::string note_on(const BlockSummary& block, const CellSummary& a, const CellSummary& b,
+                    bool paired, bool measured) {
   for (const CellSummary* cell : {&a, &b}) {
-    if (cell->status == ResultCell::Status::failed) {
-      return cell->culler + " failed: " + cell->reason;
-    }
+    if (has_failed(*cell)) return cell->culler + " failed: " + cell->reason;
+  }
+  if (!is_of_one_machine(block)) {
+    return "measured on " + std::to_string(block.machines.size()) + " machines: no common times";
   }
   if (!measured) return "no round has both";
+  if (!block.noise.measured()) return "no control: none was not measured against itself";
   if (!paired) return "measured in different runs: through none";
   if (!a.judged || !b.judged) return "errors are not judged yet";
   return "";
@@ -150,6 +154,43 @@ struct Overall {
   Errors a, b;
   bool between_pixels = false;  // what is lost there counts
   std::size_t blocks = 0, judged = 0;
+  std::size_t failed_a = 0, failed_b = 0;
+  std::size_t mixed = 0;         // blocks of several machines
+  std::size_t uncontrolled = 0;  // with a ratio, but without a control
+
+  void count(const BlockSummary& block, const CellSummary& in_a, const CellSummary& in_b,
+             const Estimate& ratio) {
+    ++blocks;
+    failed_a += has_failed(in_a) ? 1 : 0;
+    failed_b += has_failed(in_b) ? 1 : 0;
+    mixed += is_of_one_machine(block) ? 0 : 1;
+    if (!ratio.measured() || !(ratio.low > 0.0)) return;
+    ratios.push_back(ratio);
+    if (block.noise.measured() && block.noise.low > 0.0) {
+      noises.push_back(block.noise);
+    } else {
+      ++uncontrolled;
+    }
+  }
+
+  /// Of the blocks whose ratios count; not known if one of them has no control.
+  Estimate noise() const { return uncontrolled > 0 ? Estimate::none() : mean(noises); }
+
+  /// "a failed in 2; 1 block of several machines left out": what the ratio is not of.
+  std::string left_out(const std::string& name_a, const std::string& name_b) const {
+    std::string text;
+    const auto add_part = [&](std::size_t number, const std::string& part) {
+      if (number > 0) text += (text.empty() ? "" : "; ") + part;
+    };
+    const auto blocks_text = [](std::size_t number) {
+      return std::to_string(number) + (number == 1 ? " block" : " blocks");
+    };
+    add_part(failed_a, name_a + " failed in " + std::to_string(failed_a));
+    add_part(failed_b, name_b + " failed in " + std::to_string(failed_b));
+    add_part(mixed, blocks_text(mixed) + " of several machines left out");
+    add_part(uncontrolled, blocks_text(uncontrolled) + " without a control");
+    return text;
+  }
 
   /// The geometric mean of the blocks' ratios: of these blocks, not of scenes at large.
   static Estimate mean(const std::vector<Estimate>& ratios) {
@@ -236,7 +277,8 @@ std::string advice(const Lab& lab, const std::string& a, const std::string& b,
   return call + ", and the same with --culler " + quoted(name_b);
 }
 
-/// "a is faster than b: 0.62 of its time (0.60 to 0.64) in 3 blocks on osmesa; the same errors".
+/// "a is faster than b: 0.62 of its time (0.60 to 0.64) in 3 of 4 blocks, drawn by osmesa; b failed
+/// in 1; the same errors in 3 judged blocks".
 std::string sentence(const std::string& a, const std::string& b, const std::string& device,
                      const Overall& overall, const Estimate& ratio, const std::string& speed) {
   std::ostringstream text;
@@ -249,8 +291,13 @@ std::string sentence(const std::string& a, const std::string& b, const std::stri
     text << ": " << to_text(ratio.value) << " of its time (" << to_text(ratio.low) << " to "
          << to_text(ratio.high) << ")";
   }
-  text << " in " << overall.blocks << (overall.blocks == 1 ? " block" : " blocks") << ", "
+  text << " in ";
+  if (overall.ratios.size() < overall.blocks) text << overall.ratios.size() << " of ";
+  text << overall.blocks << (overall.blocks == 1 ? " block" : " blocks") << ", "
        << (device == "none" ? "nothing drawn" : "drawn by " + device) << "; ";
+  if (const std::string left_out = overall.left_out(a, b); !left_out.empty()) {
+    text << left_out << "; ";
+  }
   if (overall.judged == 0) {
     text << "errors are not judged";
   } else {
@@ -258,6 +305,7 @@ std::string sentence(const std::string& a, const std::string& b, const std::stri
     text << (errors == "same"    ? "the same errors"
              : errors == "mixed" ? "more errors of one kind, fewer of another"
                                  : errors + " errors");
+    text << " in " << overall.judged << " judged " << (overall.judged == 1 ? "block" : "blocks");
   }
   return text.str();
 }
@@ -282,10 +330,11 @@ int compare(const Lab& lab, const std::string& a, const std::string& b,
   std::map<std::string, const ResultCell*> by_id;
   for (const JudgedCell& judged : cells) by_id[judged.cell.key.id()] = &judged.cell;
 
-  std::vector<std::string> columns{
-      "scene",      "path",       "resolution",     "device",     "blocks",         "a",
-      "b",          "speed",      "ratio",          "ratio_low",  "ratio_high",     "noise_low",
-      "noise_high", "frame_ms_a", "frame_ms_p99_a", "frame_ms_b", "frame_ms_p99_b", "errors"};
+  std::vector<std::string> columns{"scene",      "path",           "resolution", "device",
+                                   "blocks",     "judged",         "a",          "b",
+                                   "speed",      "ratio",          "ratio_low",  "ratio_high",
+                                   "noise_low",  "noise_high",     "frame_ms_a", "frame_ms_p99_a",
+                                   "frame_ms_b", "frame_ms_p99_b", "errors"};
   for (const ErrorKind& kind : error_kinds) {
     for (const char* side : {"_a", "_b"}) columns.push_back(kind.metric + std::string(side));
   }
@@ -297,20 +346,21 @@ int compare(const Lab& lab, const std::string& a, const std::string& b,
     const CellSummary* const in_a = find_cell(block, chain_a);
     const CellSummary* const in_b = find_cell(block, chain_b);
     if (in_a == nullptr || in_b == nullptr) continue;
-    Estimate ratio = paired_frames(*by_id.at(in_a->id), *by_id.at(in_b->id));
-    const bool paired = ratio.measured();
-    if (!paired) ratio = ratio_through_none(*in_a, *in_b);
-    const bool both_judged = in_a->judged && in_b->judged;
+    const bool both_done = !has_failed(*in_a) && !has_failed(*in_b);
+    Estimate ratio = Estimate::none();
+    bool paired = false;
+    if (both_done && is_of_one_machine(block)) {
+      ratio = paired_frames(*by_id.at(in_a->id), *by_id.at(in_b->id));
+      paired = ratio.measured();
+      if (!paired) ratio = ratio_through_none(*in_a, *in_b);
+    }
+    const bool both_judged = both_done && in_a->judged && in_b->judged;
     const bool between_pixels = counts_between_pixels(std::array{in_a->guarantee, in_b->guarantee});
     const Errors of_a = errors_of(*in_a);
     const Errors of_b = errors_of(*in_b);
 
     Overall& overall = by_device[block.device];
-    ++overall.blocks;
-    if (ratio.measured() && ratio.low > 0.0) overall.ratios.push_back(ratio);
-    if (block.noise.measured() && block.noise.low > 0.0) {
-      overall.noises.push_back(block.noise);
-    }
+    overall.count(block, *in_a, *in_b, ratio);
     if (both_judged) {
       ++overall.judged;
       add(overall.a, of_a);
@@ -326,6 +376,7 @@ int compare(const Lab& lab, const std::string& a, const std::string& b,
         std::to_string(block.viewport.width) + "x" + std::to_string(block.viewport.height),
         block.device,
         std::uint64_t{1},
+        std::uint64_t{both_judged ? 1U : 0U},
         in_a->culler,
         in_b->culler,
         speed_verdict(ratio, block.noise),
@@ -341,7 +392,7 @@ int compare(const Lab& lab, const std::string& a, const std::string& b,
         judged_text(both_judged, error_verdict(of_a, of_b, between_pixels))};
     add_columns(row, of_a, of_b);
     row.insert(row.end(),
-               {over(*in_a), over(*in_b), note_on(*in_a, *in_b, paired, ratio.measured())});
+               {over(*in_a), over(*in_b), note_on(block, *in_a, *in_b, paired, ratio.measured())});
     table.add(std::move(row));
   }
   if (by_device.empty()) {
@@ -352,14 +403,15 @@ int compare(const Lab& lab, const std::string& a, const std::string& b,
   std::string answer;
   for (const auto& [device, overall] : by_device) {
     const Estimate ratio = Overall::mean(overall.ratios);
-    const Estimate noise = Overall::mean(overall.noises);
+    const Estimate noise = overall.noise();
     const std::string speed = speed_verdict(ratio, noise);
     std::vector<TableValue> row{
         {},
         {},
         {},
         device,
-        std::uint64_t{overall.blocks},
+        std::uint64_t{overall.ratios.size()},
+        std::uint64_t{overall.judged},
         name_a,
         name_b,
         speed,
@@ -375,7 +427,8 @@ int compare(const Lab& lab, const std::string& a, const std::string& b,
         judged_text(overall.judged > 0,
                     error_verdict(overall.a, overall.b, overall.between_pixels))};
     add_columns(row, overall.a, overall.b);
-    row.insert(row.end(), {{}, {}, "all blocks"});
+    const std::string left_out = overall.left_out(name_a, name_b);
+    row.insert(row.end(), {{}, {}, "all blocks" + (left_out.empty() ? "" : ": " + left_out)});
     table.add(std::move(row));
     answer += sentence(name_a, name_b, device, overall, ratio, speed) + "\n";
   }

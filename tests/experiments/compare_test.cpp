@@ -162,6 +162,62 @@ TEST(CompareImages, PixelsThatAMethodPaintsWronglyAreErrors) {
   }
 }
 
+TEST_F(Compare, AMethodThatFailedHasNeitherTimesNorErrors) {
+  set_times({{"frustum.wrong", 0.5}});
+  const ResultStore store = ResultStore::open(results());
+  for (ResultCell cell : store.load_all()) {
+    if (!cell.key.chain.starts_with("frustum.wrong")) continue;
+    cell.status = ResultCell::Status::failed;
+    cell.reason = "crashed";
+    store.save_cell(cell);
+  }
+  const std::vector<nlohmann::json> rows = compare("frustum.wrong", "none");
+  EXPECT_NE(rows[0].at("note").get<std::string>().find("failed: crashed"), std::string::npos);
+  for (const nlohmann::json& row : rows) {
+    EXPECT_EQ(row.at("speed"), "undecided");
+    EXPECT_TRUE(row.at("errors").is_null()) << row;
+    EXPECT_EQ(row.at("judged"), 0);
+  }
+  EXPECT_EQ(rows[1].at("blocks"), 0);
+  const std::string text =
+      run_vislab({"compare", "frustum.wrong", "none", "--results", results()}).out;
+  EXPECT_NE(text.find("in 0 of 1 block,"), std::string::npos) << text;
+  EXPECT_NE(text.find("failed in 1"), std::string::npos) << text;
+  EXPECT_NE(text.find("errors are not judged"), std::string::npos) << text;
+}
+
+TEST_F(Compare, BlocksOfSeveralMachinesAreLeftOutOfTheOverallFigure) {
+  set_times({{"frustum.flat", 0.5}});
+  const ResultStore store = ResultStore::open(results());
+  for (ResultCell cell : store.load_all()) {
+    if (!cell.key.chain.starts_with("frustum.bvh")) continue;
+    cell.context["machine"] = "another";
+    store.save_cell(cell);
+  }
+  const std::vector<nlohmann::json> rows = compare("frustum.flat", "none");
+  for (const nlohmann::json& row : rows) {
+    EXPECT_EQ(row.at("speed"), "undecided");
+    EXPECT_TRUE(row.at("ratio").is_null()) << row;
+  }
+  EXPECT_NE(rows[0].at("note").get<std::string>().find("2 machines"), std::string::npos);
+  EXPECT_NE(rows[1].at("note").get<std::string>().find("1 block of several machines left out"),
+            std::string::npos);
+  EXPECT_EQ(rows[1].at("judged"), 1) << "errors do not depend on the machine";
+}
+
+TEST_F(Compare, IsUndecidedWithoutAControl) {
+  set_times({{"frustum.flat", 0.5}});
+  const ResultStore store = ResultStore::open(results());
+  for (const ResultCell& cell : store.load_all()) {
+    if (cell.key.replicate == 0) continue;
+    fs::remove(fs::path(results()) / "cells" / (cell.key.id() + ".json"));
+  }
+  const std::vector<nlohmann::json> rows = compare("frustum.flat", "none");
+  EXPECT_EQ(rows[0].at("speed"), "undecided");
+  EXPECT_EQ(rows[1].at("speed"), "undecided");
+  EXPECT_NE(rows[1].at("note").get<std::string>().find("without a control"), std::string::npos);
+}
+
 TEST_F(Compare, ChainsOfDifferentRunsAreComparedThroughNone) {
   // As if the two had been measured in two runs, each with none beside it.
   const ResultStore store = ResultStore::open(results());
