@@ -137,6 +137,24 @@ Baseline load_baseline(const std::filesystem::path& path) {
   return baseline;
 }
 
+Baseline without(const Baseline& baseline, const std::vector<std::string>& cullers,
+                 const std::vector<std::string>& scenes, std::vector<BaselineName>& left_out) {
+  Baseline rest;
+  for (const auto& [name, facts] : baseline) {
+    const bool is_left_out =
+        std::ranges::find(cullers, name.culler) != cullers.end() ||
+        std::ranges::any_of(scenes, [&, &block = name.block](const auto& scene) {
+          return block.starts_with(scene + ", ");
+        });
+    if (is_left_out) {
+      left_out.push_back(name);
+    } else {
+      rest[name] = facts;
+    }
+  }
+  return rest;
+}
+
 std::vector<BaselineChange> changes(const Baseline& before, const Baseline& now) {
   std::vector<BaselineChange> all;
   for (const auto& [name, facts] : before) {

@@ -38,6 +38,12 @@ Baseline baseline_of(std::span<const ResultCell> cells);
 std::string to_toml(const Baseline& baseline);
 Baseline load_baseline(const std::filesystem::path& file);
 
+/// Without what cannot be compared: cells with one of `cullers`, which the build lacks, or of one
+/// of `scenes`, which are not fetched (both by their names in the baseline). `left_out` gets their
+/// names.
+Baseline without(const Baseline& baseline, const std::vector<std::string>& cullers,
+                 const std::vector<std::string>& scenes, std::vector<BaselineName>& left_out);
+
 /// One fact that is not as it was; "" where there is none.
 struct BaselineChange {
   BaselineName name;

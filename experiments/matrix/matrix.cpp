@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "common/scene/error.h"
+#include "common/scene/packages.h"
 #include "experiments/matrix/resolution.h"
 #include "experiments/matrix/toml_keys.h"
 
@@ -40,7 +41,7 @@ struct Adjustment {
 struct Description {
   std::string text;
   PassSettings pass;
-  std::vector<std::string> cullers, optional_cullers, scenes;
+  std::vector<std::string> cullers, optional_cullers, scenes, optional_scenes;
   std::vector<std::string> paths{""};
   std::vector<Viewport> resolutions{Viewport{}};
   std::vector<int> frames{60};
@@ -52,15 +53,19 @@ struct Description {
 };
 
 void read_lists(const toml::table& lists, Description& description, const std::string& file) {
-  refuse_unknown_keys(
-      lists, {"culler", "optional_culler", "scene", "path", "resolution", "frames", "device"},
-      "[lists]", file);
+  refuse_unknown_keys(lists,
+                      {"culler", "optional_culler", "scene", "optional_scene", "path", "resolution",
+                       "frames", "device"},
+                      "[lists]", file);
   if (const auto* node = lists.get("culler"))
     description.cullers = text_list(*node, "culler", file);
   if (const auto* node = lists.get("optional_culler")) {
     description.optional_cullers = text_list(*node, "optional_culler", file);
   }
   if (const auto* node = lists.get("scene")) description.scenes = text_list(*node, "scene", file);
+  if (const auto* node = lists.get("optional_scene")) {
+    description.optional_scenes = text_list(*node, "optional_scene", file);
+  }
   if (const auto* node = lists.get("path")) description.paths = text_list(*node, "path", file);
   if (const auto* node = lists.get("resolution")) {
     description.resolutions.clear();
@@ -302,7 +307,7 @@ Matrix load_matrix(const std::string& name_or_file, const fs::path& folder,
       description.scenes.empty()) {
     throw InputError(file.string() + ": [lists] must name at least one culler and one scene");
   }
-  Matrix matrix{file.stem().string(), description.text, {}, {}};
+  Matrix matrix{file.stem().string(), description.text, {}, {}, description.optional_scenes};
   const std::vector<WantedChain> everywhere = chains_of(
       description.cullers, description.optional_cullers, registry, file.string(), matrix.absent);
   std::vector<std::vector<WantedChain>> own_chains;  // as description.own_cullers
@@ -336,7 +341,10 @@ Matrix load_matrix(const std::string& name_or_file, const fs::path& folder,
     block.cullers = with_anchors(wanted, registry);
     matrix.blocks.push_back(std::move(block));
   };
-  for (const std::string& scene : description.scenes) {
+  std::vector<std::string> scenes = description.scenes;
+  scenes.insert(scenes.end(), description.optional_scenes.begin(),
+                description.optional_scenes.end());
+  for (const std::string& scene : scenes) {
     for (const std::string& path : paths_of(scene, description)) {
       for (const Viewport& viewport : description.resolutions) {
         for (const int frames : description.frames) {
@@ -367,6 +375,17 @@ Matrix single_block(const std::string& chain, const Block& settings, const Regis
   Block block = settings;
   block.cullers = with_anchors({registry.canonical(chain)}, registry);
   return {"", "", {std::move(block)}, {}};
+}
+
+std::vector<UnfetchedScene> leave_out_unfetched(Matrix& matrix, const DataFolders& folders) {
+  std::vector<UnfetchedScene> unfetched;
+  for (const std::string& scene : matrix.optional_scenes) {
+    const std::vector<std::string> missing = missing_packages(scene, folders);
+    if (missing.empty()) continue;
+    unfetched.push_back({scene, missing.front()});
+    std::erase_if(matrix.blocks, [&](const Block& block) { return block.scene == scene; });
+  }
+  return unfetched;
 }
 
 std::vector<std::pair<std::string, std::string>> list_matrices(const fs::path& folder) {

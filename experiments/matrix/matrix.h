@@ -12,6 +12,7 @@
 //   culler = ["frustum.flat", "frustum.flat > backface.polygon"]
 //   optional_culler = ["peer.bullet"]   left out, and said so, where this build does not have them
 //   scene = ["dragon"]
+//   optional_scene = ["oa_dm2"]         left out, and said so, where its package is not fetched
 //   path = [""]                    "" = the scene's own
 //   resolution = ["512x512"]
 //   frames = [60]                  0 = as many as the path has
@@ -43,6 +44,8 @@
 
 namespace vislab {
 
+struct DataFolders;  // common/scene/library.h
+
 /// A chain of a block; replicate 1 is the A/A control.
 struct BlockCuller {
   std::string chain;  // canonical
@@ -72,7 +75,18 @@ struct Matrix {
   std::string description;
   std::vector<Block> blocks;
   std::vector<std::string> absent;  // optional cullers that this build does not have, as written
+  std::vector<std::string> optional_scenes = {};
 };
+
+/// A scene that a matrix goes on without, and why.
+struct UnfetchedScene {
+  std::string scene;
+  std::string package;
+};
+
+/// Takes out the blocks of optional scenes whose packages have not been fetched. Throws InputError
+/// if an optional scene's description is wrong.
+std::vector<UnfetchedScene> leave_out_unfetched(Matrix& matrix, const DataFolders& folders);
 
 /// The chains that stand in every block, canonical, without the A/A control.
 std::vector<std::string> anchor_chains(const Registry& registry);

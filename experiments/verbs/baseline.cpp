@@ -39,24 +39,34 @@ std::vector<ResultCell> cells_of(const Matrix& matrix, const Lab& lab,
   return cells;
 }
 
-/// Cells of cullers that this build does not have are no change; says so.
-Baseline without_absent(const Baseline& committed, const Matrix& matrix) {
-  Baseline present;
-  for (const auto& [name, facts] : committed) {
-    if (std::ranges::find(matrix.absent, name.culler) == matrix.absent.end()) {
-      present[name] = facts;
-    } else {
-      std::cerr << "vislab: not compared: " << name.culler << " is not in this build\n";
+/// Cells of cullers that this build does not have, and of scenes that are not fetched, are no
+/// change; says so.
+Baseline comparable(const Baseline& committed, const Matrix& matrix,
+                    const std::vector<UnfetchedScene>& unfetched) {
+  std::vector<std::string> scenes;
+  for (const UnfetchedScene& left_out : unfetched) scenes.push_back(left_out.scene);
+  std::vector<BaselineName> left_out;
+  Baseline rest = without(committed, matrix.absent, scenes, left_out);
+  for (const BaselineName& name : left_out) {
+    std::cerr << "vislab: not compared: " << name.culler << " (" << name.block << "): ";
+    if (std::ranges::find(matrix.absent, name.culler) != matrix.absent.end()) {
+      std::cerr << "not in this build\n";
+      continue;
     }
+    const auto why = std::ranges::find_if(unfetched, [&](const UnfetchedScene& scene) {
+      return name.block.starts_with(scene.scene + ", ");
+    });
+    std::cerr << "package " << why->package << " has not been fetched\n";
   }
-  return present;
+  return rest;
 }
 
 }  // namespace
 
 int baseline(const Lab& lab, const std::filesystem::path& results, bool write, bool json) {
   const std::filesystem::path file = lab.repository / "tests" / "baseline.toml";
-  const Matrix matrix = load_matrix(matrix_name, lab.matrices, lab.cullers);
+  Matrix matrix = load_matrix(matrix_name, lab.matrices, lab.cullers);
+  const std::vector<UnfetchedScene> unfetched = leave_out_unfetched(matrix, lab.data);
   const Baseline now = baseline_of(cells_of(matrix, lab, results));
   const std::string run = std::string("vislab run ") + matrix_name;
   if (now.empty()) {
@@ -68,11 +78,15 @@ int baseline(const Lab& lab, const std::filesystem::path& results, bool write, b
       throw InputError("the baseline is written by a build with all cullers; this one lacks " +
                        matrix.absent.front() + " (README.md: Peers)");
     }
+    if (!unfetched.empty()) {
+      throw InputError("the baseline is written where all scenes are; package " +
+                       unfetched.front().package + " has not been fetched: `./lab setup`");
+    }
     write_file(file, to_toml(now));
     std::cout << now.size() << " cells written to " << file.string() << '\n';
     return 0;
   }
-  const Baseline committed = without_absent(load_baseline(file), matrix);
+  const Baseline committed = comparable(load_baseline(file), matrix, unfetched);
   const std::vector<BaselineChange> found = changes(committed, now);
   Table table({"block", "culler", "fact", "committed", "now"});
   std::set<BaselineName> names;

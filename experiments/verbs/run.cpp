@@ -79,8 +79,12 @@ void add_named(Work& work, const std::string& name, const Lab& lab,
     for (const auto& [sweep, text] : list_matrices(lab.size_sweeps)) known.push_back(sweep);
     throw unknown_name("matrix, stress sweep or file", name, known);
   }
-  const Matrix matrix = load_matrix(name, lab.matrices, lab.cullers);
+  Matrix matrix = load_matrix(name, lab.matrices, lab.cullers);
   tell_absent(name, matrix.absent);
+  for (const UnfetchedScene& left_out : leave_out_unfetched(matrix, lab.data)) {
+    std::cerr << "vislab: " << name << " goes on without scene " << left_out.scene << ": package "
+              << left_out.package << " has not been fetched; `./lab setup` fetches it\n";
+  }
   work.blocks.insert(work.blocks.end(), matrix.blocks.begin(), matrix.blocks.end());
 }
 

@@ -120,5 +120,19 @@ TEST(Baseline, RefusesWhatIsNoneWithFileAndLine) {
   EXPECT_THROW(load_baseline(folder.path() / "none.toml"), InputError);
 }
 
+TEST(Baseline, WhatCannotBeComparedHereIsNamedAndIsNoChange) {
+  ResultCell elsewhere = cell_of("frustum.flat");
+  elsewhere.scene = "city";
+  const Baseline committed = baseline_of(
+      std::vector<ResultCell>{cell_of("frustum.flat"), cell_of("peer.bullet"), elsewhere});
+  std::vector<BaselineName> left_out;
+  const Baseline rest = without(committed, {"peer.bullet"}, {"city"}, left_out);
+  ASSERT_EQ(left_out.size(), 2U);
+  EXPECT_EQ(left_out[0].block, "city, city_street, 128x96, osmesa");
+  EXPECT_EQ(left_out[1].culler, "peer.bullet");
+  ASSERT_EQ(rest.size(), 1U) << "city_tiny is another scene than city";
+  EXPECT_TRUE(changes(rest, baseline_of(std::vector<ResultCell>{cell_of("frustum.flat")})).empty());
+}
+
 }  // namespace
 }  // namespace vislab
