@@ -101,7 +101,7 @@ class TruthStore {
   explicit TruthStore(std::filesystem::path folder);  // made when something is written
   /// Empty if it is not there; a file that cannot be read is treated as not there.
   std::optional<FrameTruth> load(const std::string& key) const;
-  /// Throws InputError if the folder is not writable.
+  /// Throws WriteError if it cannot be written.
   void save(const std::string& key, const FrameTruth& truth) const;
 
  private:

@@ -1,19 +1,17 @@
 // Truth in files. A file is a header (signature, version, checksum and size of the content), then
 // the content compressed by zlib: ids as runs of (id, count), then the histogram, ids as
 // differences. All numbers are little-endian, of seven bits a byte where they vary in size.
-#include <unistd.h>
 #include <xxhash.h>
 #include <zlib.h>
 
 #include <array>
-#include <atomic>
 #include <cstring>
 #include <fstream>
 #include <string>
 #include <system_error>
 
 #include "common/judge/truth.h"
-#include "common/scene/error.h"
+#include "common/scene/write_file.h"
 
 namespace vislab {
 namespace {
@@ -160,26 +158,10 @@ void TruthStore::save(const std::string& key, const FrameTruth& truth) const {
   put_fixed(header.data() + signature.size() + 8, XXH3_64bits(stored.data() + header_size, length));
   std::memcpy(stored.data(), header.data(), header.size());
 
-  static std::atomic<unsigned> count = 0;
-  const fs::path target = file_of(folder_, key);
-  const fs::path temporary =
-      folder_ / (key + "." + std::to_string(getpid()) + "." + std::to_string(count++) + ".tmp");
-  std::error_code error;
-  fs::create_directories(folder_, error);
-  bool written = false;
-  {
-    std::ofstream file(temporary, std::ios::binary);
-    file.write(reinterpret_cast<const char*>(stored.data()),
-               static_cast<std::streamsize>(header_size + length));
-    file.close();
-    written = !file.fail();
-  }
-  if (written) fs::rename(temporary, target, error);
-  if (!written || error) {
-    fs::remove(temporary, error);
-    throw InputError("cannot write " + target.string() +
-                     ": the results folder must be writable and have room");
-  }
+  std::error_code ignored;  // if the folder cannot be made, writing says so
+  fs::create_directories(folder_, ignored);
+  write_file(file_of(folder_, key),
+             {reinterpret_cast<const char*>(stored.data()), header_size + length});
 }
 
 }  // namespace vislab

@@ -2,16 +2,12 @@
 
 #include <png.h>
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <fstream>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 
 #include "common/scene/error.h"
 #include "common/scene/file_bytes.h"
+#include "common/scene/write_file.h"
 
 namespace vislab {
 namespace {
@@ -40,23 +36,12 @@ void write_png(const std::filesystem::path& path, const Image& image) {
                      ": pictures are written as PNG; give a name that ends in .png");
   }
   const std::vector<char> bytes = encoded(image);
-  std::filesystem::path temporary = path;
-  temporary += ".tmp";
-  const auto fail = [&](const std::string& reason) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw InputError(path.string() + " cannot be written (" + reason +
-                     "): name a file in a folder that exists and is writable");
-  };
-  errno = 0;
-  std::ofstream file(temporary, std::ios::binary);
-  if (!file) fail(std::strerror(errno));
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  if (!file) fail(std::strerror(errno));
-  std::error_code error;
-  std::filesystem::rename(temporary, path, error);
-  if (error) fail(error.message());
+  try {
+    write_file(path, {bytes.data(), bytes.size()});
+  } catch (const WriteError& error) {
+    throw WriteError(std::string(error.what()) +
+                     "; name a file in a folder that exists, is writable and has room");
+  }
 }
 
 Image read_png(const std::filesystem::path& path) {

@@ -18,7 +18,7 @@ Enum from_name(const std::string& name, const std::array<Enum, n>& values,
   for (const Enum value : values) {
     if (to_string(value) == name) return value;
   }
-  throw InputError(where + ": '" + name + "' is not a known word; delete the file and run again");
+  throw InputError(where + ": '" + name + "' is not a known word");
 }
 
 constexpr std::array statuses{ResultCell::Status::running, ResultCell::Status::done,
@@ -229,7 +229,7 @@ std::optional<ResultCell> parse_cell(const std::string& text, const std::string&
     ResultCell cell;
     cell.key = key_from_json(j.at("key"));
     if (j.at("id") != cell.key.id()) {
-      throw InputError(where + ": the id does not fit the key; delete the file and run again");
+      throw InputError(where + ": the id does not fit the key");
     }
     cell.culler = j.at("culler");
     cell.scene = j.at("scene");
@@ -266,9 +266,7 @@ std::optional<ResultCell> parse_cell(const std::string& text, const std::string&
       for (const auto* samples :
            {&round.update_us, &round.cull_us, &round.draw_ms, &round.frame_ms}) {
         if (samples->size() != cell.frames.size()) {
-          throw InputError(where +
-                           ": a round does not have one sample a frame; delete the file and "
-                           "run again");
+          throw InputError(where + ": a round does not have one sample a frame");
         }
       }
     }

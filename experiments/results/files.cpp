@@ -1,9 +1,5 @@
 #include "experiments/results/files.h"
 
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <sstream>
 
@@ -23,20 +19,6 @@ std::string read_file(const std::filesystem::path& file) {
     throw InputError("cannot read " + file.string());
   }
   return std::move(content).str();
-}
-
-void write_file(const std::filesystem::path& file, const std::string& content) {
-  const std::filesystem::path temporary = file.string() + "." + std::to_string(::getpid()) + ".tmp";
-  std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-  out.write(content.data(), static_cast<std::streamsize>(content.size()));
-  out.close();
-  std::error_code code;
-  if (out) std::filesystem::rename(temporary, file, code);
-  if (!out || code) {
-    const std::string why = code ? code.message() : std::strerror(errno);
-    std::filesystem::remove(temporary, code);
-    throw WriteError("cannot write " + file.string() + ": " + why);
-  }
 }
 
 }  // namespace vislab

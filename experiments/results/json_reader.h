@@ -1,4 +1,4 @@
-// Reading JSON fields with errors that say where and what.
+// Reading JSON fields with errors that say where and what; what to do about it says the caller.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,7 +13,7 @@ inline nlohmann::json parse_json(const std::string& text, const std::string& whe
   try {
     return nlohmann::json::parse(text);
   } catch (const nlohmann::json::exception&) {
-    throw InputError(where + ": not valid JSON; delete the file and run again");
+    throw InputError(where + ": not valid JSON");
   }
 }
 
@@ -27,8 +27,7 @@ auto read_json(const std::string& where, Function&& read) {
     // "[json.exception.out_of_range.403] key 'x' not found": the library's own number says nothing.
     const std::string text = error.what();
     const auto after = text.find("] ");
-    throw InputError(where + ": " + (after == std::string::npos ? text : text.substr(after + 2)) +
-                     "; delete the file and run again");
+    throw InputError(where + ": " + (after == std::string::npos ? text : text.substr(after + 2)));
   }
 }
 

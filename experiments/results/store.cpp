@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <regex>
 
 #include "common/scene/error.h"
 #include "experiments/results/files.h"
@@ -115,6 +116,39 @@ Verdict verdict_from(const json& j) {
   return v;
 }
 
+/// Removes what write_file() calls FILE.PID.COUNT.tmp, and programs before it FILE.PID.tmp.
+void remove_temporary(const fs::path& folder, const std::string& file_pattern) {
+  const std::regex temporary("(?:" + file_pattern + R"()(?:\.[0-9]+){1,2}\.tmp)");
+  std::vector<fs::path> found;
+  std::error_code code;  // what cannot be read or removed is not in the way
+  for (fs::directory_iterator entry(folder, code), end; entry != end && !code;
+       entry.increment(code)) {
+    const fs::path name = entry->path().filename();
+    if (name.extension() == ".tmp" && std::regex_match(name.string(), temporary)) {
+      found.push_back(entry->path());
+    }
+  }
+  for (const fs::path& file : found) fs::remove(file, code);
+}
+
+/// A name in the folder that nothing has: `name`, "stem.2.json", …
+fs::path free_name(const fs::path& folder, const fs::path& name) {
+  fs::path file = folder / name;
+  for (int i = 2; fs::exists(file); ++i) {
+    file = folder / (name.stem().string() + "." + std::to_string(i) + name.extension().string());
+  }
+  return file;
+}
+
+std::optional<ResultCell> cell_of(const std::string& text, const fs::path& file) {
+  try {
+    return parse_cell(text, file.string());
+  } catch (const InputError& error) {
+    throw DamagedCell(std::string(error.what()) +
+                      "; 'vislab run' with its matrix measures it again");
+  }
+}
+
 }  // namespace
 
 std::string surface_hash(std::span<const TriangleId> owners) {
@@ -145,10 +179,26 @@ ResultStore ResultStore::open(fs::path folder) {
   return ResultStore(std::move(folder));
 }
 
+void ResultStore::remove_unfinished() const {
+  // All are named by hashes, whatever follows these.
+  for (const char* part : {"cells", "sets", "images", "truth", "verdicts"}) {
+    remove_temporary(folder_ / part, R"([0-9a-f]{32}(\.[a-z]+)?)");
+  }
+  std::error_code code;  // no such folder: no sweep was run
+  for (fs::directory_iterator sweep(folder_ / "stress", code), end; sweep != end && !code;
+       sweep.increment(code)) {
+    for (fs::directory_iterator part(sweep->path(), code), last; part != last && !code;
+         part.increment(code)) {
+      if (part->is_directory(code)) remove_temporary(part->path(), R"(.+\.toml)");
+    }
+    remove_temporary(sweep->path(), R"(cells\.json|.+\.toml)");
+  }
+}
+
 std::optional<ResultCell> ResultStore::load_cell(const std::string& id) const {
   const fs::path file = folder_ / "cells" / (id + ".json");
   if (!fs::exists(file)) return std::nullopt;
-  return parse_cell(read_file(file), file.string());
+  return cell_of(read_file(file), file);
 }
 
 void ResultStore::save_cell(const ResultCell& cell) const {
@@ -160,17 +210,19 @@ void ResultStore::save_cell(const ResultCell& cell) const {
     if (format != 0 && format != cell_format_version) {
       const fs::path older = folder_ / "other_formats" / std::to_string(format);
       fs::create_directories(older, code);
-      if (!code) fs::rename(file, older / name, code);
+      if (!code) fs::rename(file, free_name(older, name), code);
       if (code) {
         throw WriteError("cannot put " + file.string() + " aside in " + older.string() + ": " +
                          code.message());
       }
     }
   }
-  write_file(file, to_json(cell));
+  // A cell under way loses a round at most; the other files are made again, if need be.
+  const bool whole = cell.status != ResultCell::Status::running;
+  write_file(file, to_json(cell), whole ? Flush::yes : Flush::no);
 }
 
-std::vector<ResultCell> ResultStore::load_all(std::map<int, std::size_t>* other_formats) const {
+std::vector<ResultCell> ResultStore::load_all(LeftOut* left_out) const {
   std::vector<fs::path> files;
   std::error_code code;
   for (fs::directory_iterator entry(folder_ / "cells", code), end; entry != end && !code;
@@ -185,10 +237,15 @@ std::vector<ResultCell> ResultStore::load_all(std::map<int, std::size_t>* other_
   std::vector<ResultCell> cells;
   for (const fs::path& file : files) {
     const std::string text = read_file(file);
-    if (auto cell = parse_cell(text, file.string())) {
-      cells.push_back(std::move(*cell));
-    } else if (other_formats != nullptr) {
-      ++(*other_formats)[cell_format(text)];
+    try {
+      if (auto cell = cell_of(text, file)) {
+        cells.push_back(std::move(*cell));
+      } else if (left_out != nullptr) {
+        ++left_out->other_formats[cell_format(text)];
+      }
+    } catch (const DamagedCell& error) {
+      if (left_out == nullptr) throw;
+      left_out->damaged.push_back(error);
     }
   }
   return cells;

@@ -5,7 +5,8 @@
 //   truth/KEY.truth    what rays saw, compressed
 //   verdicts/ID.json   what the judge made of a cell's sets; derived, may be deleted
 //   other_formats/N/   cells of format N that were measured again since
-// Files are written to a temporary name and renamed.
+//   stress/NAME/       what stress sweeps were asked, and which cells are theirs
+// Files are written to a temporary name and renamed (write_file).
 #pragma once
 
 #include <filesystem>
@@ -20,6 +21,7 @@
 #include "common/judge/metrics.h"
 #include "common/judge/stability.h"
 #include "common/judge/surface_judge.h"
+#include "common/scene/error.h"
 #include "experiments/results/cell.h"
 
 namespace vislab {
@@ -40,6 +42,18 @@ struct CellVerdicts {
   std::uint64_t floor_undisputed_px = 0;  // not zero only if the judge itself is at fault
 };
 
+/// The file of a cell that holds none: cut off, or changed by hand. The text names it.
+class DamagedCell : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+/// Files of cells that give no cell.
+struct LeftOut {
+  std::map<int, std::size_t> other_formats;  // number of cells of each other version
+  std::vector<DamagedCell> damaged;          // by file name
+};
+
 class ResultStore {
  public:
   /// Makes the folder and its parts. Throws InputError if that cannot be done or written to.
@@ -50,15 +64,20 @@ class ResultStore {
   const std::filesystem::path& folder() const { return folder_; }
   std::filesystem::path truth_folder() const { return folder_ / "truth"; }
 
-  /// Empty if there is none, or only one of another version of the format. Throws InputError that
-  /// names the file if it is corrupt.
+  /// Removes what killed runs left half-written: temporary files of write_file() in the store's own
+  /// folders, nothing else. Only under the folder's lock.
+  void remove_unfinished() const;
+
+  /// Empty if there is none, or only one of another version of the format. Throws DamagedCell if it
+  /// is corrupt, another InputError if it cannot be read.
   std::optional<ResultCell> load_cell(const std::string& id) const;
-  /// A cell of another format that has the same name is put aside, not overwritten.
+  /// A cell of another format that has the same name is put aside, not overwritten, whatever was
+  /// put aside before; a damaged one is overwritten.
   void save_cell(const ResultCell& cell) const;
-  /// All cells of this version of the format, by id. `other_formats`, if it is not null, gets the
-  /// number of cells of each other version, which are left alone. Throws InputError that names the
-  /// first corrupt file, or the folder if it cannot be read.
-  std::vector<ResultCell> load_all(std::map<int, std::size_t>* other_formats = nullptr) const;
+  /// All cells of this version of the format, by id. The others, which are left alone, are told in
+  /// `left_out`; if it is null, a damaged one throws DamagedCell. Throws InputError that names the
+  /// folder or a file if it cannot be read.
+  std::vector<ResultCell> load_all(LeftOut* left_out = nullptr) const;
 
   /// Writes the set unless it is there.
   void save_set(const std::string& hash, const VisibleSet& set) const;

@@ -36,11 +36,13 @@ constexpr std::size_t leak_rays_per_cell = 200;
 /// A cell of the block while it is being measured.
 struct Runner {
   ResultCell cell;
-  std::unique_ptr<ICuller> culler;  // null until it is needed, and after a failure
+  std::optional<ResultCell> done_before;  // the result that stays until `cell` is whole
+  std::unique_ptr<ICuller> culler;        // null until it is needed, and after a failure
   bool anchor = false;
   int missing_rounds = 0;  // > 0: the cell is wanted
   int new_rounds = 0;
-  std::optional<PathRun> pass;  // of the round under way
+  bool failed_but_kept = false;  // the new cell failed, and `done_before` stays
+  std::optional<PathRun> pass;   // of the round under way
 };
 
 bool has_failed(const Runner& runner) { return runner.cell.status == ResultCell::Status::failed; }
@@ -78,13 +80,16 @@ class BlockRun {
       build_cullers();
       time_rounds();
     }
+    for (Runner& runner : runners_) give_back(runner);
     judge();
     for (const Runner& runner : runners_) {
       outcome_.cells.push_back(runner.cell.key.id());
-      outcome_.failed += has_failed(runner) ? 1 : 0;
+      const bool failed = has_failed(runner) || runner.failed_but_kept ||
+                          settings_.given_up.contains(runner.cell.key.id());
+      outcome_.failed += failed ? 1 : 0;
       outcome_.measured += runner.new_rounds > 0 ? 1 : 0;
       const bool was_done = runner.new_rounds == 0 && runner.missing_rounds == 0;
-      outcome_.present += was_done && !has_failed(runner) ? 1 : 0;
+      outcome_.present += was_done && !failed ? 1 : 0;
     }
     return outcome_;
   }
@@ -126,17 +131,27 @@ class BlockRun {
       const bool control = culler.replicate > 0;
       runner.anchor = control || std::ranges::find(anchors, culler.chain) != anchors.end();
       const std::string short_name = registry_.short_name(culler.chain);
-      if (!runner.anchor && !settings_.filter.empty() &&
-          short_name.find(settings_.filter) == std::string::npos &&
-          culler.chain.find(settings_.filter) == std::string::npos) {
+      const bool named = settings_.filter.empty() ||
+                         short_name.find(settings_.filter) != std::string::npos ||
+                         culler.chain.find(settings_.filter) != std::string::npos;
+      if (!runner.anchor && !named) {
         if (device_spec_.is_fitted()) {
-          take_over_fit(store_.load_cell(fresh_cell(culler, "").key.id()));
+          take_over_fit(load_stored(fresh_cell(culler, "").key.id()));
         }
         continue;
       }
       runner.cell = fresh_cell(culler, control ? short_name + " (again)" : short_name);
-      take_over_stored(runner);
+      take_over_stored(runner, settings_.force && named);
       runners_.push_back(std::move(runner));
+    }
+  }
+
+  /// A damaged cell is as good as none.
+  std::optional<ResultCell> load_stored(const std::string& id) const {
+    try {
+      return store_.load_cell(id);
+    } catch (const DamagedCell&) {
+      return std::nullopt;
     }
   }
 
@@ -153,14 +168,23 @@ class BlockRun {
   }
 
   /// Goes on with what is stored of the cell, unless it is to be measured anew.
-  void take_over_stored(Runner& runner) {
+  void take_over_stored(Runner& runner, bool force) {
     const std::string id = runner.cell.key.id();
     const bool given_up = settings_.given_up.contains(id);
-    std::optional<ResultCell> stored = store_.load_cell(id);
+    std::optional<ResultCell> stored;
+    try {
+      stored = store_.load_cell(id);
+    } catch (const DamagedCell& error) {
+      progress_.line(block_.title() + ": " + error.what());
+    }
     const bool failed = stored && stored->status == ResultCell::Status::failed;
     const bool by_this_run = stored && !stored->rounds.empty() &&
                              stored->rounds.back().session.starts_with(settings_.run);
-    if (!given_up && ((settings_.force && !by_this_run) || (settings_.retry_failed && failed))) {
+    if (!given_up && force && !by_this_run && stored &&
+        stored->status == ResultCell::Status::done) {
+      runner.done_before = stored;
+    }
+    if (!given_up && ((force && !by_this_run) || (settings_.retry_failed && failed))) {
       stored.reset();
     }
     if (stored && !failed && !same_circumstances(stored->context, context_)) {
@@ -188,6 +212,15 @@ class BlockRun {
       runner.cell.status = ResultCell::Status::done;  // fewer rounds are wanted than before
       store_.save_cell(runner.cell);
     }
+  }
+
+  /// What was done before is the result as long as the cell that was to replace it is not whole.
+  static void give_back(Runner& runner) {
+    if (!runner.done_before) return;
+    runner.cell = std::move(*runner.done_before);
+    runner.done_before.reset();
+    runner.new_rounds = 0;
+    runner.missing_rounds = 0;
   }
 
   ResultCell fresh_cell(const BlockCuller& culler, const std::string& name) const {
@@ -262,6 +295,12 @@ class BlockRun {
     // An anchor that only ran beside others keeps the result that it has.
     if (runner.missing_rounds == 0) return;
     runner.missing_rounds = 0;
+    if (runner.done_before) {
+      runner.failed_but_kept = true;
+      outcome_.failed_but_kept.push_back(runner.cell.culler + ": " + reason +
+                                         "; the result from before is kept");
+      return;
+    }
     runner.cell.status = ResultCell::Status::failed;
     runner.cell.reason = reason;
     store_.save_cell(runner.cell);
@@ -296,7 +335,7 @@ class BlockRun {
         runner.cell.device_model = device_model_;
         // On record before it starts, so that a failure has a place to be written to. What was
         // there before stays until there is something better.
-        if (!store_.load_cell(runner.cell.key.id())) store_.save_cell(runner.cell);
+        if (!load_stored(runner.cell.key.id())) store_.save_cell(runner.cell);
       }
       build_context.costs = runner.cell.costs ? &*runner.cell.costs : &costs;
       guarded(runner, [&] {
@@ -423,8 +462,11 @@ class BlockRun {
         for (const auto& [chain, anchor] : anchors) runner->cell.anchors[chain].push_back(anchor);
         runner->cell.rounds.push_back(std::move(runner->pass->round));
         ++runner->new_rounds;
-        if (--runner->missing_rounds == 0) runner->cell.status = ResultCell::Status::done;
-        store_.save_cell(runner->cell);
+        if (--runner->missing_rounds == 0) {
+          runner->cell.status = ResultCell::Status::done;
+          runner->done_before.reset();
+        }
+        if (!runner->done_before) store_.save_cell(runner->cell);
       });
     }
   }

@@ -51,18 +51,6 @@ class StopOnSignal {
   struct sigaction terminate_before_ {};
 };
 
-/// What killed runs left half-written. Only under the folder's lock.
-void remove_temporary_files(const std::filesystem::path& results) {
-  namespace fs = std::filesystem;
-  std::error_code code;  // what cannot be read is not in the way
-  const auto options = fs::directory_options::skip_permission_denied;
-  for (fs::recursive_directory_iterator entry(results, options, code), end; entry != end;
-       entry.increment(code)) {
-    if (code) break;
-    if (entry->path().extension() == ".tmp") fs::remove(entry->path(), code);
-  }
-}
-
 /// A name that no other run has.
 std::string new_run() {
   const auto now = std::chrono::system_clock::now().time_since_epoch().count();
@@ -118,8 +106,8 @@ GpuModel model_from_line(std::istream& in) {
 
 /// The child: runs the block and tells the parent what it does. Messages:
 ///   cell ID SECONDS | idle | costs NS LOW HIGH for each quantity | fit VALUE for each dial |
-///   member ID | outcome MEASURED PRESENT FAILED STOPPED | error TEXT | unwritten TEXT |
-///   failure TEXT
+///   member ID | kept TEXT | outcome MEASURED PRESENT FAILED STOPPED | error TEXT |
+///   unwritten TEXT | failure TEXT
 int run_child(int pipe, const Block& block, const RunSettings& settings, const Registry& registry,
               Progress& progress) {
   const CellWatch watch{[&](const std::string& id, double seconds) {
@@ -133,6 +121,10 @@ int run_child(int pipe, const Block& block, const RunSettings& settings, const R
         run_block(block, settings, registry, progress, watch, stop_requested);
     progress.finish();
     for (const std::string& id : outcome.cells) tell(pipe, "member " + id);
+    for (std::string text : outcome.failed_but_kept) {
+      std::ranges::replace(text, '\n', ' ');
+      tell(pipe, "kept " + text);
+    }
     tell(pipe, "outcome " + std::to_string(outcome.measured) + " " +
                    std::to_string(outcome.present) + " " + std::to_string(outcome.failed) + " " +
                    std::to_string(outcome.stopped ? 1 : 0));
@@ -156,6 +148,7 @@ struct Child {
   std::chrono::steady_clock::time_point deadline;
   std::optional<BlockOutcome> outcome;
   std::vector<std::string> members;
+  std::vector<std::string> kept;
   std::string error;      // wrong input
   std::string unwritten;  // a result that could not be written
   std::string failure;    // anything else that ended the block
@@ -180,6 +173,8 @@ void take_message(const std::string& line, Child& child) {
     child.fit = model_from_line(in);
   } else if (word == "member") {
     in >> child.members.emplace_back();
+  } else if (word == "kept") {
+    child.kept.push_back(line.substr(5));
   } else if (word == "outcome") {
     BlockOutcome outcome;
     in >> outcome.measured >> outcome.present >> outcome.failed >> outcome.stopped;
@@ -260,15 +255,18 @@ std::string reason_of_death(const Child& child) {
   return "ended without an answer";
 }
 
-/// Writes a failure into the cell that a dead child was at, unless the cell has a result already.
-void record_failure(const std::string& id, const std::string& reason,
-                    const std::filesystem::path& results) {
+/// Writes a failure into the cell that a dead child was at. A cell that has a result already keeps
+/// it: its name is given back.
+std::optional<std::string> record_failure(const std::string& id, const std::string& reason,
+                                          const std::filesystem::path& results) {
   const ResultStore store = ResultStore::open(results);
   std::optional<ResultCell> cell = store.load_cell(id);
-  if (!cell || cell->status == ResultCell::Status::done) return;
+  if (!cell) return std::nullopt;
+  if (cell->status == ResultCell::Status::done) return cell->culler;
   cell->status = ResultCell::Status::failed;
   cell->reason = reason;
   store.save_cell(*cell);
+  return std::nullopt;
 }
 
 }  // namespace
@@ -278,7 +276,7 @@ RunOutcome run_blocks(const std::vector<Block>& blocks, const RunOptions& option
   RunOutcome total;
   Progress progress(options.quiet);
   const StopOnSignal signals;
-  remove_temporary_files(options.settings.results);
+  ResultStore::open(options.settings.results).remove_unfinished();
   RunSettings settings = options.settings;
   settings.run = new_run();
   std::vector<std::size_t> mine;
@@ -299,6 +297,9 @@ RunOutcome run_blocks(const std::vector<Block>& blocks, const RunOptions& option
       total.cells.insert(child.members.begin(), child.members.end());
       std::vector<std::string>& members = total.cells_of_block[mine[i]];
       members.insert(members.end(), child.members.begin(), child.members.end());
+      for (const std::string& text : child.kept) {
+        total.failures.push_back(block.title() + ": " + text);
+      }
       if (child.outcome) {
         const BlockOutcome& outcome = *child.outcome;
         total.measured += outcome.measured;
@@ -329,7 +330,10 @@ RunOutcome run_blocks(const std::vector<Block>& blocks, const RunOptions& option
         total.failures.push_back(block.title() + ": " + reason);
         break;
       }
-      record_failure(child.cell, reason, settings.results);
+      if (const auto culler = record_failure(child.cell, reason, settings.results)) {
+        total.failures.push_back(block.title() + ": " + *culler + ": " + reason +
+                                 "; the result from before is kept");
+      }
       settings.given_up.insert(child.cell);
       progress.line(block.title() + ": a cell failed: " + reason);
     }

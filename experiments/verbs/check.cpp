@@ -26,10 +26,20 @@ std::string file_name(const std::string& spec) {
   return name;
 }
 
+fs::path default_picture(const std::string& culler) {
+  return fs::path("out") / "check" / (file_name(culler) + ".png");
+}
+
+/// A picture of an earlier failure would be taken for one of now.
+void remove_stale_picture(const std::string& culler) {
+  std::error_code code;
+  fs::remove(default_picture(culler), code);
+}
+
 fs::path write_picture(const Witness& witness, const std::string& culler, const fs::path& output) {
   fs::path file = output;
   if (file.empty()) {
-    file = fs::path("out") / "check" / (file_name(culler) + ".png");
+    file = default_picture(culler);
     std::error_code code;  // if it cannot be made, writing says so
     fs::create_directories(file.parent_path(), code);
   }
@@ -75,7 +85,12 @@ int check(const Lab& lab, const std::string& culler, const fs::path& output, boo
   std::optional<Witness> witness;
   const std::vector<ContractResult> results = check_contract(lab.cullers, culler, &witness);
   fs::path picture;
-  if (witness) picture = write_picture(*witness, culler, output);
+  if (witness) {
+    picture = write_picture(*witness, culler, output);
+  } else {
+    remove_stale_picture(culler);
+    if (!output.empty()) std::cerr << "vislab: no wrong pixel: no picture written\n";
+  }
   Table table({"check", "passed", "message"});
   for (const ContractResult& result : results) {
     table.add({result.check, result.passed, result.message});

@@ -20,8 +20,10 @@ struct CullerName {
 };
 
 /// Lower case; no underscore in a family, so that `a_b` + `c` and `a` + `b_c` are no one function.
+/// Two underscores in a row are C++'s own, and one at the end belongs to members.
 bool is_word(const std::string& text, bool underscores) {
   if (text.empty() || std::islower(static_cast<unsigned char>(text.front())) == 0) return false;
+  if (text.ends_with('_') || text.find("__") != std::string::npos) return false;
   return std::ranges::all_of(text, [&](char c) {
     const auto byte = static_cast<unsigned char>(c);
     return std::islower(byte) != 0 || std::isdigit(byte) != 0 || (underscores && c == '_');
@@ -33,9 +35,10 @@ CullerName parse_name(const std::string& name) {
   const CullerName parts{name.substr(0, dot), dot == std::string::npos ? "" : name.substr(dot + 1)};
   if (!is_word(parts.family, false) || !is_word(parts.variant, true) ||
       parts.family == parts.variant) {
-    throw InputError("'" + name +
-                     "' cannot be a culler's name; right is family.variant, of lower-case letters "
-                     "and digits (the variant also of _), such as frustum.two_step");
+    throw InputError(
+        "'" + name +
+        "' cannot be a culler's name; right is family.variant, of lower-case letters "
+        "and digits (the variant also of single _ between them), such as frustum.two_step");
   }
   return parts;
 }

@@ -1,7 +1,6 @@
 #include "experiments/verbs/present_results.h"
 
 #include <iostream>
-#include <map>
 
 #include "common/scene/error.h"
 #include "experiments/context/sources.h"
@@ -9,13 +8,17 @@
 
 namespace vislab {
 
-std::vector<JudgedCell> present_cells(const std::filesystem::path& results,
-                                      const Registry& cullers) {
+std::vector<JudgedCell> present_cells(const std::filesystem::path& results, const Registry& cullers,
+                                      std::vector<DamagedCell>* damaged) {
   const ResultStore store = ResultStore::open(results);
   std::vector<JudgedCell> present;
-  std::map<int, std::size_t> other_formats;
-  std::vector<ResultCell> stored = store.load_all(&other_formats);
-  for (const auto& [format, count] : other_formats) {
+  LeftOut left_out;
+  std::vector<ResultCell> stored = store.load_all(&left_out);
+  for (const DamagedCell& cell : left_out.damaged) {
+    std::cerr << "vislab: left out: " << cell.what() << '\n';
+  }
+  if (damaged != nullptr) *damaged = left_out.damaged;
+  for (const auto& [format, count] : left_out.other_formats) {
     std::cerr << "vislab: " << count << (count == 1 ? " cell" : " cells") << " in "
               << (results / "cells").string() << (count == 1 ? " is" : " are") << " of format "
               << format << ", of " << (format < cell_format_version ? "an older" : "a newer")
@@ -36,8 +39,9 @@ std::vector<JudgedCell> present_cells(const std::filesystem::path& results,
 }
 
 std::vector<JudgedCell> require_present_cells(const std::filesystem::path& results,
-                                              const Registry& cullers) {
-  std::vector<JudgedCell> present = present_cells(results, cullers);
+                                              const Registry& cullers,
+                                              std::vector<DamagedCell>* damaged) {
+  std::vector<JudgedCell> present = present_cells(results, cullers, damaged);
   if (present.empty()) {
     throw InputError("no results in " + results.string() +
                      " were measured with the sources of this program; run the matrices again");

@@ -124,7 +124,8 @@ PlannedGaps gaps_of(const Lab& lab, const std::vector<JudgedCell>& cells) {
 
 int report(const Lab& lab, const std::filesystem::path& results,
            const std::filesystem::path& output) {
-  const std::vector<JudgedCell> cells = require_present_cells(results, lab.cullers);
+  std::vector<DamagedCell> damaged;
+  const std::vector<JudgedCell> cells = require_present_cells(results, lab.cullers, &damaged);
   ReportInput input;
   std::vector<BlockSummary> blocks = summarise(cells);
   input.sizes = size_results(lab, cells, blocks);
@@ -174,6 +175,9 @@ int report(const Lab& lab, const std::filesystem::path& results,
     }
     return missing;
   };
+  for (const DamagedCell& cell : damaged) {
+    input.missing_blocks.push_back({"a damaged cell", cell.what()});
+  }
   for (const PlannedGap& gap : gaps.blocks) input.missing_blocks.push_back({gap.name, gap.reason});
   input.frame_times = [&](const CellSummary& cell) { return stored_frame_times(results, cell); };
   write_report(input, lab.report, output);

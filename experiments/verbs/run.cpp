@@ -312,7 +312,8 @@ int run(const Lab& lab, const RunCall& call) {
   }
   for (const std::string& failure : outcome.failures) std::cerr << "vislab: " << failure << '\n';
   if (outcome.stopped) {
-    std::cerr << "stopped; the same call goes on from here\n";
+    std::cerr << (call.force ? "stopped; what was not measured again is as it was\n"
+                             : "stopped; the same call goes on from here\n");
     return 1;
   }
   return outcome.failed > 0 || !outcome.failures.empty() ? 1 : 0;

@@ -37,15 +37,20 @@ fs::path notes_file(const fs::path& results, const std::string& sweep) {
 Notes read_notes(const fs::path& file) {
   Notes notes;
   if (!fs::exists(file)) return notes;
-  const nlohmann::json j = parse_json(read_file(file), file.string());
-  return read_json(file.string(), [&] {
-    for (const auto& [value, noted] : j.at("values").items()) {
-      notes.values[value] = {noted.at("conditions").get<std::string>(),
-                             noted.at("cells").get<std::map<std::string, std::string>>()};
-    }
-    notes.former = j.at("former").get<std::set<std::string>>();
-    return notes;
-  });
+  const std::string text = read_file(file);
+  try {
+    const nlohmann::json j = parse_json(text, file.string());
+    return read_json(file.string(), [&] {
+      for (const auto& [value, noted] : j.at("values").items()) {
+        notes.values[value] = {noted.at("conditions").get<std::string>(),
+                               noted.at("cells").get<std::map<std::string, std::string>>()};
+      }
+      notes.former = j.at("former").get<std::set<std::string>>();
+      return notes;
+    });
+  } catch (const InputError& error) {
+    throw InputError(std::string(error.what()) + "; delete the file and run the sweep again");
+  }
 }
 
 void write_notes(const Notes& notes, const fs::path& file) {

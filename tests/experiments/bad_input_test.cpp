@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "experiments/results/files.h"
 #include "tests/experiments/program.h"
 #include "tests/experiments/temporary_folder.h"
 
@@ -180,26 +179,6 @@ TEST_F(BadInput, AResultsFolderThatCannotBeMadeIsRefused) {
                                            "--results", "/proc/vislab-results"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_NE(result.err.find("/proc/vislab-results"), std::string::npos) << result.err;
-}
-
-TEST_F(BadInput, ACorruptCellIsNamedAndLeftAsItIs) {
-  ASSERT_EQ(run_on("box_field_tiny").exit_code, 0);
-  fs::path cell;
-  for (const auto& entry : fs::directory_iterator(fs::path(results()) / "cells")) {
-    cell = entry.path();
-  }
-  const std::string broken = read_file(cell).substr(0, 100);
-  write_file(cell, broken);
-  for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"export", "csv", "--results", results()},
-        {"run", "--culler", "frustum.flat", "--scene", "box_field_tiny", "--frames", "2",
-         "--rounds", "1", "--resolution", "32x32", "--results", results()}}) {
-    const ProgramResult result = run_vislab(arguments);
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
-    EXPECT_NE(result.err.find(cell.filename().string()), std::string::npos) << result.err;
-    EXPECT_EQ(read_file(cell), broken);
-  }
 }
 
 TEST_F(BadInput, AReportWithoutResultsIsRefused) {

@@ -93,9 +93,9 @@ TEST_F(NewCuller, IsMadeFromAnywhereInTheCheckout) {
 }
 
 TEST_F(NewCuller, BadNamesAreRefused) {
-  for (const char* name :
-       {"mine", "mine.", ".mine", "Mine.first", "mine.First", "mine.a-b", "my_own.first",
-        "mine.first.second", "../x.y", "mine.mine", "1mine.a", "mine. ", "mine.a/b"}) {
+  for (const char* name : {"mine", "mine.", ".mine", "Mine.first", "mine.First", "mine.a-b",
+                           "my_own.first", "mine.first.second", "../x.y", "mine.mine", "1mine.a",
+                           "mine. ", "mine.a/b", "mine.first__step", "mine.first_"}) {
     expect_refused(name, "family.variant");
   }
 }
