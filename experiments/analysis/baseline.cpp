@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
+#include <fstream>
 #include <numeric>
+#include <set>
 #include <tuple>
 
 #include "experiments/matrix/toml_keys.h"
@@ -13,6 +15,8 @@ namespace vislab {
 namespace {
 
 using namespace toml_keys;
+
+constexpr std::string_view origin_line = "# Measured with: ";
 
 bool is_modelled(const ResultCell& cell) { return cell.key.device.starts_with("modelled"); }
 
@@ -82,12 +86,40 @@ Baseline baseline_of(std::span<const ResultCell> cells) {
   return baseline;
 }
 
-std::string to_toml(const Baseline& baseline) {
+std::string origin_of(std::span<const ResultCell> cells) {
+  std::set<std::string> simd;
+  std::map<std::string, std::set<std::string>> facts{{"embree", {}}, {"device", {}}};
+  for (const ResultCell& cell : cells) {
+    simd.insert(cell.key.simd);
+    for (auto& [name, texts] : facts) {
+      if (name == "device" && is_modelled(cell)) continue;  // the blocks' names say all of these
+      if (const auto found = cell.context.find(name); found != cell.context.end()) {
+        texts.insert(found->second);
+      }
+    }
+  }
+  std::string text;
+  for (const std::set<std::string>& texts : {simd, facts.at("embree"), facts.at("device")}) {
+    for (const std::string& one : texts) text += (text.empty() ? "" : "; ") + one;
+  }
+  return text;
+}
+
+std::string load_origin(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line) && line.starts_with('#');) {
+    if (line.starts_with(origin_line)) return line.substr(origin_line.size());
+  }
+  return "unknown";
+}
+
+std::string to_toml(const Baseline& baseline, const std::string& origin) {
   std::string text =
       "# What the cullers answer in the matrix smoke (experiments/analysis/baseline.h): one line "
       "a\n"
       "# cell, hashes of all visible sets and sums of all counters. Written by 'vislab baseline "
-      "--write'.\n";
+      "--write'.\n" +
+      std::string(origin_line) + origin + "\n";
   std::string block;
   for (const auto& [name, facts] : baseline) {
     if (name.block != block) {

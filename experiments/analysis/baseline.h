@@ -33,9 +33,16 @@ using Baseline = std::map<BaselineName, BaselineFacts>;
 /// Of all cells that are done and whose answers repeat, the A/A control left out.
 Baseline baseline_of(std::span<const ResultCell> cells);
 
-/// TOML text, and back. load_baseline throws InputError that names file and line, and what would be
-/// right.
-std::string to_toml(const Baseline& baseline);
+/// What the cells were measured with, in a line: instruction sets that the kernels ran with, the
+/// ray caster and the renderer. Answers are the same whatever it is, as far as is known; where they
+/// are not, it says where to look first.
+std::string origin_of(std::span<const ResultCell> cells);
+
+/// TOML text, and back. `origin` becomes a line at the head that is no part of the answers.
+/// load_baseline throws InputError that names file and line, and what would be right.
+std::string to_toml(const Baseline& baseline, const std::string& origin);
+/// The line at the head of the file; "unknown" if it has none.
+std::string load_origin(const std::filesystem::path& file);
 Baseline load_baseline(const std::filesystem::path& file);
 
 /// Without what cannot be compared: cells with one of `cullers`, which the build lacks, or of one

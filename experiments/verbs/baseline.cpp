@@ -67,7 +67,8 @@ int baseline(const Lab& lab, const std::filesystem::path& results, bool write, b
   const std::filesystem::path file = lab.repository / "tests" / "baseline.toml";
   Matrix matrix = load_matrix(matrix_name, lab.matrices, lab.cullers);
   const std::vector<UnfetchedScene> unfetched = leave_out_unfetched(matrix, lab.data);
-  const Baseline now = baseline_of(cells_of(matrix, lab, results));
+  const std::vector<ResultCell> cells = cells_of(matrix, lab, results);
+  const Baseline now = baseline_of(cells);
   const std::string run = std::string("vislab run ") + matrix_name;
   if (now.empty()) {
     throw InputError("no cell of " + std::string(matrix_name) + " is in " + results.string() +
@@ -82,7 +83,7 @@ int baseline(const Lab& lab, const std::filesystem::path& results, bool write, b
       throw InputError("the baseline is written where all scenes are; package " +
                        unfetched.front().package + " has not been fetched: `./lab setup`");
     }
-    write_file(file, to_toml(now));
+    write_file(file, to_toml(now, origin_of(cells)));
     std::cout << now.size() << " cells written to " << file.string() << '\n';
     return 0;
   }
@@ -104,7 +105,8 @@ int baseline(const Lab& lab, const std::filesystem::path& results, bool write, b
     return 0;
   }
   std::cerr << "vislab: " << names.size() << " of " << committed.size()
-            << " cells answer otherwise than in " << file.string()
+            << " cells answer otherwise than in " << file.string() << ". Those were measured with "
+            << load_origin(file) << "; these with " << origin_of(cells)
             << ". If that is meant, write it anew: " << run << " && vislab baseline --write\n";
   return 1;
 }

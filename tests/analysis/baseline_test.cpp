@@ -99,7 +99,7 @@ TEST(Baseline, ComesBackFromItsText) {
   cells[3].frames[1].surface = "77";
   const Baseline baseline = baseline_of(cells);
   const TemporaryFolder folder;
-  const Baseline again = load_baseline(folder.write("baseline.toml", to_toml(baseline)));
+  const Baseline again = load_baseline(folder.write("baseline.toml", to_toml(baseline, "AVX2")));
   EXPECT_EQ(again, baseline);
 }
 
@@ -132,6 +132,21 @@ TEST(Baseline, WhatCannotBeComparedHereIsNamedAndIsNoChange) {
   EXPECT_EQ(left_out[1].culler, "peer.bullet");
   ASSERT_EQ(rest.size(), 1U) << "city_tiny is another scene than city";
   EXPECT_TRUE(changes(rest, baseline_of(std::vector<ResultCell>{cell_of("frustum.flat")})).empty());
+}
+
+TEST(Baseline, SaysWhatItWasMeasuredWithAndDoesNotCompareThat) {
+  ResultCell cell = cell_of("frustum.flat");
+  cell.key.simd = "AVX2";
+  cell.context["embree"] = "embree 3";
+  cell.context["device"] = "Mesa 22";
+  const std::vector<ResultCell> cells{cell, cell};
+  EXPECT_EQ(origin_of(cells), "AVX2; embree 3; Mesa 22");
+  const TemporaryFolder folder;
+  const std::string file = folder.write("b.toml", to_toml(baseline_of(cells), origin_of(cells)));
+  EXPECT_EQ(load_origin(file), "AVX2; embree 3; Mesa 22");
+  cell.key.simd = "SSE4";
+  EXPECT_TRUE(changes(load_baseline(file), baseline_of(std::vector<ResultCell>{cell})).empty());
+  EXPECT_EQ(load_origin(folder.write("old.toml", "# A baseline\n[\"a\"]\n")), "unknown");
 }
 
 }  // namespace
