@@ -174,12 +174,14 @@ void write_words(const ReportInput& input, const QueryFindings& queries,
 void publish(const fs::path& work, const fs::path& folder) {
   std::error_code code;
   fs::create_directories(folder, code);
+  std::vector<std::string> names{"index.html", "report.pdf"};
   const auto unwritable = [&] {
+    std::error_code ignored;
+    for (const std::string& name : names) fs::remove(folder / (name + ".tmp"), ignored);
     return InputError("the report cannot be written to " + folder.string() + ": " + code.message() +
                       "; name another folder with -o");
   };
   if (code) throw unwritable();
-  std::vector<std::string> names{"index.html", "report.pdf"};
   if (fs::exists(work / persistence_file)) names.emplace_back(persistence_file);
   for (const std::string& name : names) {
     fs::copy_file(work / name, folder / (name + ".tmp"), fs::copy_options::overwrite_existing,

@@ -43,6 +43,13 @@ pid_t start(const std::vector<std::string>& arguments, const std::string& out,
   return pid;
 }
 
+/// A minute at most.
+void wait_for(const std::function<bool()>& when) {
+  for (int i = 0; i < 3000 && !when(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+}
+
 /// Waits for its end.
 ProgramResult result_of(pid_t pid, const std::string& out, const std::string& err) {
   int status = 0;
@@ -71,10 +78,22 @@ ProgramResult signal_vislab(const std::vector<std::string>& arguments, int signa
   const std::string out = folder.path() / "out";
   const std::string err = folder.path() / "err";
   const pid_t pid = start(arguments, out, err);
-  for (int i = 0; i < 3000 && !when(); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
+  wait_for(when);
   ::kill(signal == SIGINT ? -pid : pid, signal);
+  return result_of(pid, out, err);
+}
+
+ProgramResult interrupt_vislab_twice(const std::vector<std::string>& arguments,
+                                     const std::function<bool()>& when) {
+  const TemporaryFolder folder;
+  const std::string out = folder.path() / "out";
+  const std::string err = folder.path() / "err";
+  const pid_t pid = start(arguments, out, err);
+  wait_for(when);
+  ::kill(-pid, SIGINT);
+  // Signals that come while one is waiting to be handled are one.
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  ::kill(-pid, SIGINT);
   return result_of(pid, out, err);
 }
 

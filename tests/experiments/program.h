@@ -25,6 +25,10 @@ ProgramResult run_vislab_on_full_disk(const std::vector<std::string>& arguments,
 ProgramResult signal_vislab(const std::vector<std::string>& arguments, int signal,
                             const std::function<bool()>& when);
 
+/// The same with Ctrl-C, twice, as from a terminal.
+ProgramResult interrupt_vislab_twice(const std::vector<std::string>& arguments,
+                                     const std::function<bool()>& when);
+
 /// Starts it, waits `after_ms`, kills it and whatever it started.
 void kill_vislab(const std::vector<std::string>& arguments, int after_ms);
 
