@@ -178,6 +178,17 @@ def main():
     if not picture.read_bytes().startswith(b"\x89PNG"):
         print(f"{picture} is no picture")
         return 1
+    report = copy / "out" / "mine_report"
+    if not (report / "report.pdf").read_bytes().startswith(b"%PDF-"):
+        print(f"{report / 'report.pdf'} is no PDF")
+        return 1
+    page = (report / "index.html").read_text().replace("<wbr>", "")
+    chapter = re.search(
+        r'<h1[^>]* id="methods-of-the-family-mine">(.*?)(?=<h1|\Z)', page, re.DOTALL
+    )
+    if not chapter or "mine.all_planes" not in chapter.group(1):
+        print(f"{report / 'index.html'} has no chapter on mine.all_planes")
+        return 1
     shutil.rmtree(copy)
     return 0
 
