@@ -175,21 +175,22 @@ void publish(const fs::path& work, const fs::path& folder) {
   std::error_code code;
   fs::create_directories(folder, code);
   std::vector<std::string> names{"index.html", "report.pdf"};
+  const std::string temporary = "." + std::to_string(::getpid()) + ".tmp";  // of no other report
   const auto unwritable = [&] {
     std::error_code ignored;
-    for (const std::string& name : names) fs::remove(folder / (name + ".tmp"), ignored);
+    for (const std::string& name : names) fs::remove(folder / (name + temporary), ignored);
     return InputError("the report cannot be written to " + folder.string() + ": " + code.message() +
                       "; name another folder with -o");
   };
   if (code) throw unwritable();
   if (fs::exists(work / persistence_file)) names.emplace_back(persistence_file);
   for (const std::string& name : names) {
-    fs::copy_file(work / name, folder / (name + ".tmp"), fs::copy_options::overwrite_existing,
+    fs::copy_file(work / name, folder / (name + temporary), fs::copy_options::overwrite_existing,
                   code);
     if (code) throw unwritable();
   }
   for (const std::string& name : names) {
-    fs::rename(folder / (name + ".tmp"), folder / name, code);
+    fs::rename(folder / (name + temporary), folder / name, code);
     if (code) throw unwritable();
   }
 }

@@ -1,9 +1,11 @@
 #include "experiments/verbs/sweep_results.h"
 
 #include <algorithm>
+#include <iostream>
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "common/scene/error.h"
 #include "experiments/results/files.h"
@@ -72,10 +74,36 @@ const ValueNote* note_of(const Notes& notes, const Sweep& sweep, std::size_t val
   return found->second.conditions == sweep.conditions[value] ? &found->second : nullptr;
 }
 
-std::vector<Sweep> known_sweeps(const Lab& lab, const fs::path& results) {
-  std::vector<Sweep> sweeps = load_sweeps(lab.sweeps, results, lab.cullers);
-  for (Sweep& sweep : load_kept_sweeps(lab.sweeps, results, lab.cullers)) {
-    sweeps.push_back(std::move(sweep));
+/// "F9" before "F10", as load_sweeps() has them.
+bool failure_comes_before(const Sweep& a, const Sweep& b) {
+  const auto order = [](const Sweep& sweep) {
+    std::string number;
+    for (const char c : sweep.failure) {
+      if (c >= '0' && c <= '9') number += c;
+    }
+    return std::tuple(number.size(), number, sweep.failure, sweep.name);
+  };
+  return order(a) < order(b);
+}
+
+/// Sweeps that cannot be read are left out: each says why in a message.
+std::vector<Sweep> known_sweeps(const Lab& lab, const fs::path& results,
+                                std::vector<std::string>& messages) {
+  std::vector<Sweep> sweeps;
+  for (const auto& [name, description] : list_sweeps(lab.sweeps)) {
+    try {
+      sweeps.push_back(load_sweep(name, lab.sweeps, results, lab.cullers));
+    } catch (const InputError& error) {
+      messages.emplace_back(error.what());
+    }
+  }
+  std::ranges::stable_sort(sweeps, failure_comes_before);
+  try {
+    for (Sweep& sweep : load_kept_sweeps(lab.sweeps, results, lab.cullers)) {
+      sweeps.push_back(std::move(sweep));
+    }
+  } catch (const InputError& error) {
+    messages.emplace_back(error.what());
   }
   return sweeps;
 }
@@ -149,7 +177,11 @@ void note_sweep_cells(const Sweep& sweep, const RunOutcome& outcome, std::size_t
 
 std::vector<SweepResult> sweep_results(const Lab& lab, const fs::path& results,
                                        const std::vector<JudgedCell>& cells) {
-  const std::vector<Sweep> sweeps = known_sweeps(lab, results);
+  std::vector<std::string> messages;
+  const std::vector<Sweep> sweeps = known_sweeps(lab, results, messages);
+  for (const std::string& message : messages) {
+    std::cerr << "vislab: sweep left out: " << message << '\n';
+  }
   const std::set<std::string> ids = present_ids(sweeps, results);
   std::vector<JudgedCell> of_sweeps;
   std::ranges::copy_if(cells, std::back_inserter(of_sweeps), [&](const JudgedCell& judged) {
@@ -182,7 +214,9 @@ std::vector<SweepResult> sweep_results(const Lab& lab, const fs::path& results,
 std::pair<std::vector<BlockSummary>, std::vector<BlockSummary>> split_sweeps(
     const Lab& lab, std::vector<BlockSummary> blocks, const fs::path& results) {
   const std::set<std::string> noted = noted_ids(results);
-  const std::set<std::string> present = present_ids(known_sweeps(lab, results), results);
+  std::vector<std::string> told_elsewhere;  // by sweep_results()
+  const std::set<std::string> present =
+      present_ids(known_sweeps(lab, results, told_elsewhere), results);
   const auto sweeps = std::ranges::stable_partition(blocks, [&](const BlockSummary& block) {
     return !std::ranges::all_of(block.cells,
                                 [&](const CellSummary& cell) { return noted.contains(cell.id); });

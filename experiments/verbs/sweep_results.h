@@ -21,9 +21,9 @@ void note_sweep_cells(const Sweep& sweep, const RunOutcome& outcome, std::size_t
                       const std::filesystem::path& results);
 
 /// Every sweep of the lab, measured or not, by failure, then those that were run from other files,
-/// and what is stored of each as it is described now. `cells` are those that count. Throws
-/// InputError for sweeps and notes that are wrong, and where no method has the counter that a sweep
-/// asks for.
+/// and what is stored of each as it is described now. `cells` are those that count. A sweep that
+/// cannot be read is left out, and why is said on stderr. Throws InputError for notes that are
+/// wrong, and where no method has the counter that a sweep asks for.
 std::vector<SweepResult> sweep_results(const Lab& lab, const std::filesystem::path& results,
                                        const std::vector<JudgedCell>& cells);
 
