@@ -162,7 +162,7 @@ void add_claim_fields(const ReportInput& input, Fields& fields) {
       any |= own.cell != nullptr;
       const ClaimVerdict verdict = verdict_of(row, own);
       ++counts[static_cast<std::size_t>(verdict)];
-      if (row.scene.empty()) {
+      if (!row.cannot_be_told.empty() && own.cell == nullptr) {
         untold.push_back(untold_fields(row));
       } else {
         (verdict == ClaimVerdict::not_run ? not_run : rows).push_back(row_fields(row, own));

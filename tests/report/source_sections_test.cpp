@@ -171,6 +171,22 @@ TEST_F(SourceSections, RowsThatMakeTheSameClaimOfSeveralScenesSayOnceWhatTheySha
   EXPECT_EQ(rows[2].values.at("method").find("`frustum.flat`"), 0U);
 }
 
+TEST_F(SourceSections, FiguresWithoutAVerdictStandBesideOursIfThereAreAny) {
+  input_.published[0].rows[0].cannot_be_told = "held near 64";
+  Fields fields;
+  add_claim_fields(input_, fields);
+  const Fields& row = fields.lists["claim_sources"][0].lists.at("rows").at(0);
+  EXPECT_EQ(row.values.at("verdict"), "cannot be told");
+  EXPECT_EQ(row.values.at("accept"), "–");
+  EXPECT_TRUE(row.values.at("own").starts_with("4.0")) << row.values.at("own");
+  EXPECT_NE(row.values.at("scene").find("held near 64"), std::string::npos);
+  input_.blocks.clear();
+  Fields gone;
+  add_claim_fields(input_, gone);
+  EXPECT_EQ(gone.lists["untold_claims"].size(), 2U);
+  EXPECT_TRUE(gone.lists["measured_sources"].empty());
+}
+
 TEST_F(SourceSections, AClaimThatNoiseDecidesSaysSo) {
   input_.published[0].rows[0].accept = {3.95, 5.0};
   input_.blocks[0].noise = {1.0, 0.9, 1.1};
