@@ -31,25 +31,70 @@ std::map<std::string, std::string> read_reasons(const toml::table& root, const s
   return reasons;
 }
 
+/// Names of all cullers that the sweeps measure.
+std::set<std::string> cullers_of(const std::vector<Sweep>& sweeps) {
+  std::set<std::string> names;
+  for (const Sweep& sweep : sweeps) {
+    for (const Block& block : sweep.blocks) {
+      for (const BlockCuller& culler : block.cullers) {
+        for (const CullerSpec& stage : parse_chain(culler.chain)) names.insert(stage.name);
+      }
+    }
+  }
+  return names;
+}
+
+std::vector<std::pair<std::string, std::string>> read_cullers_without(
+    const toml::table& root, const std::vector<Sweep>& sweeps, const std::string& file) {
+  std::vector<std::pair<std::string, std::string>> without;
+  const toml::array* const list = root["culler"].as_array();
+  if (list == nullptr) return without;
+  const std::set<std::string> swept = cullers_of(sweeps);
+  for (const toml::node& node : *list) {
+    const toml::table* const table = node.as_table();
+    if (table == nullptr) throw InputError(place(file, node) + ": write [[culler]], a table");
+    refuse_unknown_keys(*table, {"name", "because"}, "[[culler]]", file);
+    const auto name = value_of<std::string>(*table, "name", "a text", file);
+    const auto because = value_of<std::string>(*table, "because", "a text", file);
+    if (!name || !because) {
+      throw InputError(place(file, *table) + ": [[culler]] needs name and because");
+    }
+    if (swept.contains(*name)) {
+      throw InputError(place(file, *table) + ": " + *name +
+                       " stands in a sweep, so no reason is needed");
+    }
+    without.emplace_back(*name, *because);
+  }
+  return without;
+}
+
+/// "; without: F13 (…), …", or nothing.
+std::string listed(const std::string& start,
+                   const std::vector<std::pair<std::string, std::string>>& entries) {
+  std::string text;
+  for (const auto& [name, because] : entries) {
+    text += (text.empty() ? "; " + start + ": " : ", ") + name + " (" + because + ")";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string AtlasCoverage::text() const {
-  std::string text = std::to_string(with_sweep) + " of " + std::to_string(entries) +
-                     " entries of the failure atlas have a sweep";
-  for (std::size_t i = 0; i < without.size(); ++i) {
-    text += (i == 0 ? "; without: " : ", ") + without[i].first + " (" + without[i].second + ")";
-  }
-  return text;
+  return std::to_string(with_sweep) + " of " + std::to_string(entries) +
+         " entries of the failure atlas have a sweep" + listed("without", without) +
+         listed("cullers without", cullers_without);
 }
 
 AtlasCoverage atlas_coverage(const std::vector<Sweep>& sweeps, const std::filesystem::path& path) {
   const std::string file = path.string();
   const toml::table root = parse_file(path);
-  refuse_unknown_keys(root, {"entries", "without"}, "the coverage of the atlas", file);
+  refuse_unknown_keys(root, {"entries", "without", "culler"}, "the coverage of the atlas", file);
   const toml::node* const entries = root.get("entries");
   if (entries == nullptr) throw InputError(file + ": entries, the number of rows, is missing");
   AtlasCoverage coverage;
   coverage.entries = static_cast<std::size_t>(whole_number(*entries, "entries", 1, 1000, file));
+  coverage.cullers_without = read_cullers_without(root, sweeps, file);
   std::map<std::string, std::string> reasons = read_reasons(root, file);
   std::set<std::string> swept;
   for (const Sweep& sweep : sweeps) {

@@ -1,13 +1,13 @@
 #include "experiments/matrix/sweep.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <sstream>
 #include <tuple>
 
 #include "common/judge/metrics.h"
+#include "experiments/matrix/dial_gaps.h"
 #include "experiments/matrix/resolution.h"
 #include "experiments/matrix/toml_keys.h"
 #include "experiments/results/files.h"
@@ -18,77 +18,39 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace toml_keys;
+using namespace dial_gaps;
 
 constexpr std::size_t fewest_values = 8;
-constexpr std::string_view gap = "${dial}";
 constexpr const char* kept_folder = "sweep";  // in the sweep's folder: its text if not the lab's
 
-std::string replaced(std::string text, std::string_view with) {
-  for (std::size_t at = 0; (at = text.find(gap, at)) != std::string::npos; at += with.size()) {
-    text.replace(at, gap.size(), with);
+/// The file's table. If it extends another sweep, that one's keys stand where it has none of its
+/// own, but for what is measured and expected.
+toml::table read_sweep_table(const fs::path& path, const fs::path& folder) {
+  toml::table own = parse_file(path);
+  const std::string file = path.string();
+  const auto base = value_of<std::string>(own, "extends", "the name of a sweep", file);
+  if (!base) return own;
+  const fs::path base_file = folder / (*base + ".toml");
+  if (!fs::is_regular_file(base_file)) {
+    std::vector<std::string> known;
+    for (const auto& [name, text] : list_sweeps(folder)) known.push_back(name);
+    throw InputError(place(file, *own.get("extends")) + ": " +
+                     unknown_name("sweep", *base, known).what());
   }
-  return text;
-}
-
-/// One value of the dial: a whole number stays one, for keys that ask for whole numbers.
-struct DialValue {
-  std::optional<std::int64_t> whole;
-  double number = 0.0;
-  std::string text;
-};
-
-std::string digits_of(double number) {
-  char digits[32];
-  const auto end = std::to_chars(digits, digits + sizeof digits, number).ptr;
-  return {digits, end};
-}
-
-toml::table substituted(const toml::table& table, const DialValue& value);
-toml::array substituted(const toml::array& array, const DialValue& value);
-
-/// Hands `add` the node with the dial's value in all its gaps.
-template <typename Add>
-void substitute(const toml::node& node, const DialValue& value, Add&& add) {
-  if (const toml::table* table = node.as_table()) {
-    add(substituted(*table, value));
-  } else if (const toml::array* array = node.as_array()) {
-    add(substituted(*array, value));
-  } else if (const auto* text = node.as_string(); text != nullptr && text->get() != gap) {
-    add(replaced(text->get(), value.text));
-  } else if (text != nullptr && value.whole) {
-    add(*value.whole);
-  } else if (text != nullptr) {
-    add(value.number);
-  } else if (const auto* whole = node.as_integer()) {
-    add(whole->get());
-  } else if (const auto* number = node.as_floating_point()) {
-    add(number->get());
-  } else if (const auto* flag = node.as_boolean()) {
-    add(flag->get());
+  toml::table table = parse_file(base_file);
+  if (table.contains("extends")) {
+    throw InputError(place(file, *own.get("extends")) + ": '" + *base +
+                     "' extends another sweep itself; extend that one");
   }
-}
-
-toml::table substituted(const toml::table& table, const DialValue& value) {
-  toml::table result;
-  for (const auto& [key, node] : table) {
-    const std::string name(key.str());
-    substitute(node, value, [&](auto filled) { result.insert(name, std::move(filled)); });
+  own.erase("extends");
+  table.erase("limit");
+  table.erase("expect");
+  if (own.contains("cullers")) table.erase("optional_cullers");
+  for (auto&& [key, node] : own) {
+    node.visit(
+        [&, name = key.str()](auto& value) { table.insert_or_assign(name, std::move(value)); });
   }
-  return result;
-}
-
-toml::array substituted(const toml::array& array, const DialValue& value) {
-  toml::array result;
-  for (const toml::node& node : array) {
-    substitute(node, value, [&](auto filled) { result.push_back(std::move(filled)); });
-  }
-  return result;
-}
-
-std::string toml_text(const toml::table& table) {
-  std::ostringstream text;
-  text << toml::toml_formatter(table) << '\n';
-  return text.str();
+  return table;
 }
 
 const toml::table& table_at(const toml::table& root, std::string_view key,
@@ -219,8 +181,9 @@ SweepExpectation read_expectation(const toml::table& table, const SweepDial& dia
 /// Reads one sweep file and makes its blocks.
 class SweepReader {
  public:
-  SweepReader(const fs::path& path, const fs::path& results, const Registry& registry)
-      : path_(path), file_(path.string()), root_(parse_file(path)), registry_(registry) {
+  SweepReader(const fs::path& path, const fs::path& folder, const fs::path& results,
+              const Registry& registry)
+      : file_(path.string()), root_(read_sweep_table(path, folder)), registry_(registry) {
     sweep_.name = path.stem().string();
     folder_ = results / "stress" / sweep_.name;
   }
@@ -424,7 +387,6 @@ class SweepReader {
     return hash_text(text.str());
   }
 
-  fs::path path_;
   std::string file_;
   toml::table root_;
   const Registry& registry_;
@@ -461,9 +423,9 @@ std::string SweepDial::setting(std::size_t value) const {
 Sweep load_sweep(const std::string& name_or_file, const fs::path& folder, const fs::path& results,
                  const Registry& registry) {
   const fs::path named = folder / (name_or_file + ".toml");
-  if (fs::is_regular_file(named)) return SweepReader(named, results, registry).read();
+  if (fs::is_regular_file(named)) return SweepReader(named, folder, results, registry).read();
   if (const fs::path file = name_or_file; fs::is_regular_file(file)) {
-    Sweep sweep = SweepReader(file, results, registry).read();
+    Sweep sweep = SweepReader(file, folder, results, registry).read();
     const fs::path of_the_lab = folder / (sweep.name + ".toml");
     if (fs::exists(of_the_lab) && fs::equivalent(file, of_the_lab)) return sweep;
     if (fs::exists(of_the_lab)) {
@@ -512,7 +474,8 @@ std::vector<std::pair<std::string, std::string>> list_sweeps(const fs::path& fol
 
 bool is_sweep_file(const fs::path& file) {
   try {
-    return toml::parse_file(file.string()).contains("dial");
+    const toml::table table = toml::parse_file(file.string());
+    return table.contains("dial") || table.contains("failure");
   } catch (const toml::parse_error&) {
     return false;
   }

@@ -45,5 +45,21 @@ TEST(Coverage, RefusesRowsWithNeitherSweepNorReasonWithBothAndBeyondTheEnd) {
   EXPECT_NE(message({"F1", "F3", "F4"}).find("no row F4"), std::string::npos);
 }
 
+TEST(Coverage, NamesCullersThatStandInNoSweepAndRefusesReasonsForOthers) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("entries.toml", std::string(second_without) +
+                                                     "[[culler]]\nname = \"portal.map_pvs\"\n"
+                                                     "because = \"no worlds\"\n");
+  std::vector<Sweep> sweeps = sweeps_of({"F1", "F3"});
+  const AtlasCoverage coverage = atlas_coverage(sweeps, file);
+  ASSERT_EQ(coverage.cullers_without.size(), 1U);
+  EXPECT_NE(coverage.text().find("; cullers without: portal.map_pvs (no worlds)"),
+            std::string::npos)
+      << coverage.text();
+  sweeps[1].blocks.emplace_back();
+  sweeps[1].blocks[0].cullers = {{"frustum.flat > portal.map_pvs", 0}};
+  EXPECT_THROW(atlas_coverage(sweeps, file), InputError);
+}
+
 }  // namespace
 }  // namespace vislab

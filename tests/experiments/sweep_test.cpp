@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "algorithms/all_cullers.h"
 #include "common/scene/error.h"
+#include "experiments/analysis/coverage.h"
 #include "experiments/results/files.h"
 #include "tests/experiments/temporary_folder.h"
 
@@ -71,6 +73,40 @@ TEST_F(SweepFileTest, OptionalCullersThatTheBuildDoesNotHaveAreLeftOutAndNamed) 
                 .find("unheard_of"),
             std::string::npos)
       << "what the build has must be right";
+}
+
+TEST_F(SweepFileTest, ASweepThatExtendsAnotherHoldsTheSameToAnotherLimit) {
+  folder_.write("base.toml", "resolution = \"48x32\"\noptional_cullers = [\"frustum.bvh\"]\n" +
+                                 head + dial + scene +
+                                 "[limit]\nmetric = \"over\"\nat_most = 7\n"
+                                 "[[expect]]\nculler = \"frustum.*\"\nbreaks = \"never\"\n"
+                                 "source = \"s\"\nbecause = \"b\"\n");
+  const std::string other = "description = \"Other\"\nfailure = \"F2\"\nextends = \"base\"\n";
+  const std::string limit = "[limit]\nmetric = \"flicker\"\nat_most = 1\n";
+  const Sweep base = load_sweep("base", folder_.path(), folder_.path() / "results", registry_);
+  const Sweep sweep = load(other + limit);
+  EXPECT_EQ(sweep.failure, "F2");
+  EXPECT_EQ(sweep.description, "Other");
+  EXPECT_EQ(sweep.limit.metric, "flicker");
+  EXPECT_EQ(sweep.limit.at_most, 1.0);
+  ASSERT_EQ(sweep.methods.size(), 2U);
+  EXPECT_FALSE(sweep.methods[0].expectation) << "what is expected is not the base's";
+  ASSERT_EQ(sweep.blocks.size(), base.blocks.size());
+  EXPECT_EQ(sweep.blocks[3].viewport, (Viewport{48, 32}));
+  EXPECT_EQ(sweep.blocks[3].frames, base.blocks[3].frames);
+  EXPECT_EQ(load(other).limit.metric, "false_px") << "nor is the limit";
+
+  const Sweep own =
+      load(other + "cullers = [\"frustum.octree\"]\nresolution = \"16x16\"\n" + limit);
+  ASSERT_EQ(own.methods.size(), 1U) << "the base's optional cullers belong to its list";
+  EXPECT_EQ(own.methods[0].culler, "frustum.octree");
+  EXPECT_EQ(own.blocks[0].viewport, (Viewport{16, 16}));
+
+  EXPECT_NE(refusal("extends = \"bass\"\n" + head).find("base"), std::string::npos);
+  folder_.write("second.toml", other + limit);
+  const std::string twice = refusal("extends = \"second\"\n" + head);
+  EXPECT_NE(twice.find("extends another"), std::string::npos) << twice;
+  EXPECT_TRUE(is_sweep_file(folder_.path() / "second.toml")) << "without a dial of its own";
 }
 
 TEST_F(SweepFileTest, TheResolutionMayDependOnTheDial) {
@@ -224,6 +260,30 @@ TEST_F(SweepFileTest, EverySweepOfTheRepositoryCanBeReadAndSaysWhatItExpects) {
     EXPECT_TRUE(std::ranges::any_of(sweep.methods, [](const SweepMethod& method) {
       return method.expectation.has_value();
     })) << sweep.name;
+  }
+}
+
+TEST_F(SweepFileTest, EveryCullerOfTheRegistryStandsInASweepOrHasAReason) {
+  const std::filesystem::path folder =
+      std::filesystem::path(VISLAB_SOURCE_DIR) / "experiments" / "stress";
+  const std::vector<Sweep> sweeps = load_sweeps(folder, folder_.path(), registry_);
+  std::set<std::string> seen;
+  for (const auto& [name, because] :
+       atlas_coverage(sweeps, folder / "coverage" / "entries.toml").cullers_without) {
+    seen.insert(name);
+    EXPECT_NO_THROW(registry_.make(name)) << name << " has a reason and is no culler";
+  }
+  for (const Sweep& sweep : sweeps) {
+    for (const SweepMethod& method : sweep.methods) {
+      for (const std::string& chain : method.chains) {
+        for (const CullerSpec& stage : parse_chain(chain)) seen.insert(stage.name);
+      }
+    }
+  }
+  for (const auto& [name, entry] : registry_.entries()) {
+    EXPECT_TRUE(seen.contains(name) || name == "oracle")
+        << name << " belongs into a sweep of experiments/stress or, with a reason, into its "
+        << "coverage/entries.toml (the oracle stands in every block)";
   }
 }
 
