@@ -31,22 +31,39 @@ std::string by_scene(const SizeVerdict& verdict, const Text& text) {
   return joined;
 }
 
+/// "6", or "6 or 8" where intervals leave several.
+std::string common_knee(const SizeSweep& sweep, const SizeCurve& common) {
+  if (common.may_be_knee.empty()) return setting(sweep, common.knee);
+  std::string joined;
+  for (const std::size_t value : common.may_be_knee) {
+    joined += (joined.empty() ? "" : " or ") + setting(sweep, value);
+  }
+  return joined;
+}
+
 std::string share(double relative) { return std::isnan(relative) ? "–" : format_percent(relative); }
 
 /// What the measured knee says of the default.
 std::string verdict_text(const SizeSweep& sweep, const SizeVerdict& verdict) {
   if (!verdict.was_measured()) return "not measured";
-  if (verdict.default_is_knee()) return "is the knee";
+  if (verdict.default_is_knee()) {
+    return verdict.common.may_be_knee.size() == 1 ? "is the knee" : "may be the knee";
+  }
   const SizePoint& by_default = verdict.common.points[verdict.method.default_value];
-  return "**knee at " + setting(sweep, verdict.common.knee) + "**; the default has " +
-         share(by_default.relative) + " of the best";
+  return "**knee at " + common_knee(sweep, verdict.common) + "**; the default has " +
+         share(by_default.relative) + " of the best" +
+         (verdict.method.off_knee.empty() ? "" : ": " + markdown_text(verdict.method.off_knee));
 }
 
 Fields value_row(const SizeSweep& sweep, const SizeVerdict& verdict, std::size_t value) {
   const SizePoint& point = verdict.common.points[value];
   Fields row;
   std::string name = markdown_text(sweep.values[value]);
-  if (verdict.common.knee == value) name = "**" + name + "** (knee)";
+  if (verdict.common.knee == value) {
+    name = "**" + name + "** (knee)";
+  } else if (std::ranges::count(verdict.common.may_be_knee, value) > 0) {
+    name += " (may be the knee)";
+  }
   if (verdict.method.default_value == value) name += " (default)";
   row.values["value"] = name;
   row.values["by_scene"] = by_scene(verdict, [&](const SizeCurve& scene) {
@@ -85,7 +102,7 @@ Fields summary_row(const SizeSweep& sweep, const SizeVerdict& verdict) {
   row.values["method"] = markdown_code(verdict.method.culler);
   row.values["knees"] =
       by_scene(verdict, [&](const SizeCurve& scene) { return setting(sweep, scene.knee); });
-  row.values["knee"] = setting(sweep, verdict.common.knee);
+  row.values["knee"] = common_knee(sweep, verdict.common);
   row.values["default"] = markdown_text(sweep.values[verdict.method.default_value]);
   row.values["of_best"] = measured ? share(by_default.relative) : markdown_text(by_default.gap);
   row.values["bytes"] = measured ? format_bytes(by_default.bytes) : "–";

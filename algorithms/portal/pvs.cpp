@@ -44,8 +44,8 @@ CullerInfo describe() {
       "Build: O(portals^2) and the sequences of portals that lines can cross; a frame: "
       "O(candidates), at most 6 plane tests for each that is in the set";
   info.limits =
-      "Only walls between cells hide. Gaps narrower than 0.01 mm are overlooked. Objects that move "
-      "and scenes without cells are culled by the frustum alone.";
+      "Only walls between cells hide. Gaps narrower than a hundredth of a millimetre are "
+      "overlooked. Objects that move and scenes without cells are culled by the frustum alone.";
   info.sources = {"Airey 1990, Increasing Update Rates in the Building Walkthrough System",
                   "Teller and Sequin 1991, Visibility Preprocessing for Interactive Walkthroughs",
                   "id Software 1996, the visibility compiler of Quake"};

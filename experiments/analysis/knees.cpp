@@ -11,6 +11,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double same_bytes = 0.99;
+constexpr int fewest_rounds = 3;  // of fewer, intervals tell how frames differ, not how runs do
 
 /// Update and cull, µs, with the widest interval that the two allow.
 Estimate decision_us(const CellSummary& cell) {
@@ -33,6 +34,18 @@ std::uint64_t wrong_pixels_of(const CellSummary& cell) {
   return wrong;
 }
 
+/// The modelled frame with the interval of what is measured of it.
+Estimate modelled_frame_ms(const CellSummary& cell) {
+  const double all = cell.modelled_frame_ms;
+  if (cell.asks_device) {
+    const Estimate& ratio = cell.against_none;
+    return {all, all * ratio.low / ratio.value, all * ratio.high / ratio.value};
+  }
+  const Estimate decision = decision_us(cell);
+  const double drawing = all - decision.value / 1e3;
+  return {all, drawing + decision.low / 1e3, drawing + decision.high / 1e3};
+}
+
 /// Decisions are compared with the soonest of the curve, which is not known yet: until then their
 /// efficiency is the reciprocal of what they take.
 void measure_cost(const SizeCell& found, SizeCost cost, SizePoint& point) {
@@ -41,14 +54,18 @@ void measure_cost(const SizeCell& found, SizeCost cost, SizePoint& point) {
     point.cost = cell.frame_ms.median.value;
     point.efficiency = cell.efficiency;
   } else if (cost == SizeCost::modelled_frame_ms) {
-    point.cost = cell.modelled_frame_ms;
     const CellSummary* const oracle = oracle_like(*found.block, cell);
-    const double ratio = oracle == nullptr ? nan : oracle->modelled_frame_ms / point.cost;
-    point.efficiency = {ratio, ratio, ratio};
+    const double least = oracle == nullptr ? nan : oracle->modelled_frame_ms;
+    const Estimate frame = modelled_frame_ms(cell);
+    point.cost = frame.value;
+    point.efficiency = {least / frame.value, least / frame.high, least / frame.low};
   } else {
     const Estimate decision = decision_us(cell);
     point.cost = decision.value;
     point.efficiency = {1.0 / decision.value, 1.0 / decision.high, 1.0 / decision.low};
+  }
+  if (cell.rounds < fewest_rounds) {
+    point.efficiency.low = point.efficiency.high = point.efficiency.value;
   }
 }
 
@@ -96,6 +113,16 @@ bool is_smaller(const SizePoint& point, const SizePoint& than) {
   return static_cast<double>(point.bytes) < same_bytes * static_cast<double>(than.bytes);
 }
 
+/// Of the values the one of the smallest model.
+std::optional<std::size_t> smallest(const std::vector<SizePoint>& points,
+                                    const std::vector<std::size_t>& values) {
+  std::optional<std::size_t> found;
+  for (const std::size_t value : values) {
+    if (!found || is_smaller(points[value], points[*found])) found = value;
+  }
+  return found;
+}
+
 /// Fills in what depends on the other points: best, relative, knee. The best of several that are
 /// equally efficient is the first.
 void find_knee(SizeCurve& curve) {
@@ -109,13 +136,22 @@ void find_knee(SizeCurve& curve) {
   if (!curve.best) return;
   const SizePoint& best = points[*curve.best];
   const double most = best.efficiency.value;
+  std::vector<std::size_t> certain{*curve.best};
   for (std::size_t i = 0; i < points.size(); ++i) {
     SizePoint& point = points[i];
     if (!point.was_measured()) continue;
     point.relative = point.efficiency.value / most;
-    if (point.relative < knee_efficiency || point.wrong_pixels > best.wrong_pixels) continue;
-    if (!curve.knee || is_smaller(point, points[*curve.knee])) curve.knee = i;
+    if (point.wrong_pixels > best.wrong_pixels) continue;
+    if (point.efficiency.high >= knee_efficiency * most) curve.may_be_knee.push_back(i);
+    if (point.efficiency.low >= knee_efficiency * most) certain.push_back(i);
   }
+  std::ranges::sort(certain);
+  const std::size_t largest = *smallest(points, certain);
+  std::erase_if(curve.may_be_knee, [&](std::size_t value) {
+    return is_smaller(points[largest], points[value]) ||
+           (value > largest && !is_smaller(points[value], points[largest]));
+  });
+  curve.knee = smallest(points, curve.may_be_knee);
 }
 
 SizeCurve curve_of(const SizeSweep& sweep, const SizeMethod& method, std::size_t block,
@@ -140,8 +176,8 @@ SizePoint common_point(const std::vector<SizeCurve>& scenes, std::size_t value) 
   common.cost = common.relative = nan;
   const auto count = static_cast<double>(scenes.size());
   double logarithm = 0.0;
-  double low = 0.0;
-  double high = 0.0;
+  double below = 0.0;  // squares add up: scenes are measured independently of each other
+  double above = 0.0;
   for (const SizeCurve& scene : scenes) {
     const SizePoint& point = scene.points[value];
     if (!point.was_measured()) {
@@ -149,30 +185,44 @@ SizePoint common_point(const std::vector<SizeCurve>& scenes, std::size_t value) 
       return common;
     }
     logarithm += std::log(point.efficiency.value) / count;
-    low += std::log(point.efficiency.low) / count;
-    high += std::log(point.efficiency.high) / count;
+    const Estimate& own = point.efficiency;
+    below += std::pow(std::log(own.value / own.low) / count, 2.0);
+    above += std::pow(std::log(own.high / own.value) / count, 2.0);
     common.bytes += point.bytes;
     common.build_ms += point.build_ms;
     common.wrong_pixels += point.wrong_pixels;
     common.over += point.over / count;
     common.recall += point.recall / count;
   }
-  common.efficiency = {std::exp(logarithm), std::exp(low), std::exp(high)};
+  common.efficiency = {std::exp(logarithm), std::exp(logarithm - std::sqrt(below)),
+                       std::exp(logarithm + std::sqrt(above))};
   return common;
 }
 
 using Facts = std::map<std::string, std::set<std::string>>;
 
-/// What the cells of a block say of the facts that are there by name.
-void add_facts(const BlockSummary& block, Facts& facts) {
-  for (auto& [name, texts] : facts) {
-    if (const auto one = block.context.find(name); one != block.context.end()) {
-      texts.insert(one->second);
-    }
-    if (const auto mixed = block.mixed_context.find(name); mixed != block.mixed_context.end()) {
-      texts.insert(mixed->second.begin(), mixed->second.end());
+/// What the cells of a block say of one fact.
+std::set<std::string> facts_of(const BlockSummary& block, const std::string& name) {
+  std::set<std::string> texts;
+  if (const auto one = block.context.find(name); one != block.context.end()) {
+    texts.insert(one->second);
+  }
+  if (const auto mixed = block.mixed_context.find(name); mixed != block.mixed_context.end()) {
+    texts.insert(mixed->second.begin(), mixed->second.end());
+  }
+  return texts;
+}
+
+void add_facts(const SizeCell& found, Facts& facts) {
+  for (const char* const name : {"cpu", "compiler", "date", "revision"}) {
+    const bool changed =
+        name == std::string("revision") && facts_of(*found.block, "dirty").contains("yes");
+    for (const std::string& text : facts_of(*found.block, name)) {
+      facts[name].insert(text + (changed ? "+" : ""));
     }
   }
+  facts["rounds"].insert(std::to_string(found.cell->rounds));
+  facts["threads"].insert(std::to_string(found.block->threads));
 }
 
 std::string joined(const std::set<std::string>& texts) {
@@ -200,17 +250,23 @@ bool SizeResult::is_complete() const {
   });
 }
 
+bool SizeVerdict::default_is_knee() const {
+  return std::ranges::count(common.may_be_knee, method.default_value) > 0;
+}
+
 SizeResult find_knees(const SizeSweep& sweep, const SizeCellOf& cell_of) {
   SizeResult result;
   result.sweep = sweep;
-  Facts facts{{"cpu", {}}, {"date", {}}};
+  Facts facts;
   for (const SizeMethod& method : sweep.methods) {
     SizeVerdict verdict;
     verdict.method = method;
     for (std::size_t block = 0; block < sweep.blocks.size(); ++block) {
       verdict.scenes.push_back(curve_of(sweep, method, block, cell_of));
-      const SizeCell first = cell_of(block, method.chains.front());
-      if (first.block != nullptr) add_facts(*first.block, facts);
+      for (const std::string& chain : method.chains) {
+        const SizeCell found = cell_of(block, chain);
+        if (found.cell != nullptr) add_facts(found, facts);
+      }
     }
     for (std::size_t value = 0; value < sweep.values.size(); ++value) {
       verdict.common.points.push_back(common_point(verdict.scenes, value));
@@ -218,8 +274,7 @@ SizeResult find_knees(const SizeSweep& sweep, const SizeCellOf& cell_of) {
     find_knee(verdict.common);
     result.verdicts.push_back(std::move(verdict));
   }
-  result.machine = joined(facts["cpu"]);
-  result.date = joined(facts["date"]);
+  for (const auto& [name, texts] : facts) result.provenance[name] = joined(texts);
   return result;
 }
 

@@ -5,10 +5,15 @@
 // models that hold the same, the one whose value stands first in the sweep. The common knee of
 // several scenes is chosen in the same way by the geometric mean of the efficiencies, the sum of
 // the wrong pixels and the sum of the bytes, of the values that were measured on every scene.
+//
+// Times differ from run to run, and with them which model is just within 5 %. So a model may be the
+// knee if the interval of its efficiency reaches 95 % of the best, unless a smaller one has all of
+// its interval there. `knee` is the smallest that may be; a default that may be is not refuted.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,7 +32,7 @@ struct SizePoint {
   std::uint64_t bytes = 0;
   double build_ms = 0.0;
   double cost = 0.0;  // in the unit of SizeCost
-  /// As SizeCost says, with an interval where pairs or rounds give one.
+  /// As SizeCost says, with the interval that at least three rounds give; else all three are equal.
   Estimate efficiency = Estimate::none();
   double relative = 0.0;           // efficiency.value / the best one's; NaN if not measured
   std::uint64_t wrong_pixels = 0;  // false_px + image_px; of conservative methods also lost samples
@@ -42,6 +47,7 @@ struct SizeCurve {
   std::string scene, path;        // empty for the common one
   std::vector<SizePoint> points;  // one for each value of the dial
   std::optional<std::size_t> best, knee;
+  std::vector<std::size_t> may_be_knee;  // ascending; knee is one of them
 
   std::size_t measured() const;
 };
@@ -52,16 +58,17 @@ struct SizeVerdict {
   SizeCurve common;               // bytes, build_ms: sums; over, recall: means; cost: NaN
 
   bool was_measured() const { return common.knee.has_value(); }
-  /// Nothing is missing and the default is the common knee.
-  bool default_is_knee() const { return common.knee == method.default_value; }
+  /// May the default be the common knee, as far as the intervals tell?
+  bool default_is_knee() const;
 };
 
 struct SizeResult {
   SizeSweep sweep;
   std::vector<SizeVerdict> verdicts;  // one for each of the sweep's methods
-  /// What the cells of the measured blocks say of their processor and day, each once, ascending,
-  /// with commas between them; empty where they say nothing.
-  std::string machine, date;
+  /// What the measured cells say of "cpu", "compiler", "revision" (with "+" if files were changed
+  /// since), "date", "rounds" and "threads": each value once, ascending, with commas between them;
+  /// empty where they say nothing.
+  std::map<std::string, std::string> provenance;
 
   bool was_measured() const;
   /// Every value on every scene.

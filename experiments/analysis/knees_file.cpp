@@ -16,6 +16,12 @@ constexpr const char* opening =
     "that\n"
     "# explain a default stand in experiments/model_size.\n";
 
+const std::vector<std::string>& provenance_keys() {
+  static const std::vector<std::string> keys{"cpu",  "compiler", "revision",
+                                             "date", "rounds",   "threads"};
+  return keys;
+}
+
 std::string quoted(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
@@ -38,14 +44,18 @@ std::string number(double value) {
 void write_scene(const SizeSweep& sweep, const SizeVerdict& verdict, const SizeCurve& scene,
                  std::ostream& out) {
   const SizePoint& point = scene.points[verdict.method.default_value];
+  const double best = scene.points[*scene.best].efficiency.value;
   out << "\n[[knee.scene]]\nscene = " << quoted(scene.scene) << '\n';
   if (!scene.path.empty()) out << "path = " << quoted(scene.path) << '\n';
   out << "knee = " << quoted(sweep.values[*scene.knee])
       << "\nbest = " << quoted(sweep.values[*scene.best])
-      << "\nefficiency = " << number(point.efficiency.value)
-      << "\nof_best = " << number(point.relative) << "\nwrong_pixels = " << point.wrong_pixels
-      << "\nover = " << number(point.over) << "\nbytes = " << point.bytes
-      << "\nbuild_ms = " << number(point.build_ms) << '\n';
+      << "\ndefault_of_best = " << number(point.relative)
+      << "\ndefault_of_best_low = " << number(point.efficiency.low / best)
+      << "\ndefault_of_best_high = " << number(point.efficiency.high / best)
+      << "\ndefault_efficiency = " << number(point.efficiency.value)
+      << "\ndefault_wrong_pixels = " << point.wrong_pixels
+      << "\ndefault_over = " << number(point.over) << "\ndefault_bytes = " << point.bytes
+      << "\ndefault_build_ms = " << number(point.build_ms) << '\n';
 }
 
 void write_verdict(const SizeResult& result, const SizeVerdict& verdict, std::ostream& out) {
@@ -53,13 +63,24 @@ void write_verdict(const SizeResult& result, const SizeVerdict& verdict, std::os
   out << "\n[[knee]]\ndial = " << quoted(sweep.dial)
       << "\nculler = " << quoted(verdict.method.culler)
       << "\nparameter = " << quoted(verdict.method.parameter)
+      << "\nchain = " << quoted(verdict.method.chains[verdict.method.default_value])
       << "\ndefault = " << quoted(sweep.values[verdict.method.default_value])
-      << "\nknee = " << quoted(sweep.values[*verdict.common.knee]) << '\n';
+      << "\nknee = " << quoted(sweep.values[*verdict.common.knee]) << "\nmay_be_knee = [";
+  for (std::size_t i = 0; i < verdict.common.may_be_knee.size(); ++i) {
+    out << (i == 0 ? "" : ", ") << quoted(sweep.values[verdict.common.may_be_knee[i]]);
+  }
+  out << "]\n";
+  if (!verdict.default_is_knee()) {
+    out << "off_knee = " << quoted(verdict.method.off_knee) << '\n';
+  }
   if (!verdict.method.note.empty()) out << "note = " << quoted(verdict.method.note) << '\n';
-  out << "sweep = " << quoted(sweep.name) << "\ncost = " << quoted(to_string(sweep.cost))
-      << "\nmachine = " << quoted(result.machine) << "\ndate = " << quoted(result.date)
-      << "\nregenerate = "
-      << quoted("vislab run model_size && vislab knees --write data/knees.toml") << '\n';
+  out << "sweep = " << quoted(sweep.name) << "\ncost = " << quoted(to_string(sweep.cost)) << '\n';
+  for (const std::string& key : provenance_keys()) {
+    const auto found = result.provenance.find(key);
+    out << key << " = " << quoted(found == result.provenance.end() ? "" : found->second) << '\n';
+  }
+  out << "regenerate = " << quoted("vislab run model_size && vislab knees --write data/knees.toml")
+      << '\n';
   for (const SizeCurve& scene : verdict.scenes) write_scene(sweep, verdict, scene, out);
 }
 
@@ -110,20 +131,27 @@ std::vector<CommittedKnee> read_knees(const std::filesystem::path& path) {
   std::vector<CommittedKnee> knees;
   for (const toml::node& node : *entries) {
     const toml::table& table = *node.as_table();
-    refuse_unknown_keys(table,
-                        {"dial", "culler", "parameter", "default", "knee", "note", "sweep", "cost",
-                         "machine", "date", "regenerate", "scene"},
-                        "[[knee]]", file);
+    std::vector<std::string> known{"dial", "culler", "parameter", "chain",       "default",
+                                   "knee", "note",   "sweep",     "may_be_knee", "off_knee",
+                                   "cost", "scene",  "regenerate"};
+    known.insert(known.end(), provenance_keys().begin(), provenance_keys().end());
+    refuse_unknown_keys(table, known, "[[knee]]", file);
     CommittedKnee knee;
     knee.dial = text_of(table, "dial", file);
     knee.culler = text_of(table, "culler", file);
     knee.parameter = text_of(table, "parameter", file);
+    knee.chain = text_of(table, "chain", file);
     knee.default_value = text_of(table, "default", file);
     knee.knee = text_of(table, "knee", file);
     knee.note = value_of<std::string>(table, "note", "a text", file).value_or("");
+    knee.off_knee = value_of<std::string>(table, "off_knee", "a text", file).value_or("");
     knee.sweep = text_of(table, "sweep", file);
-    knee.machine = text_of(table, "machine", file);
-    knee.date = text_of(table, "date", file);
+    if (const toml::node* const values = table.get("may_be_knee")) {
+      knee.may_be_knee = text_list(*values, "may_be_knee", file);
+    }
+    for (const std::string& key : provenance_keys()) {
+      knee.provenance[key] = text_of(table, key, file);
+    }
     if (const toml::array* const scenes = tables(table, "scene", file)) {
       for (const toml::node& scene : *scenes) {
         knee.scenes.push_back(text_of(*scene.as_table(), "scene", file));

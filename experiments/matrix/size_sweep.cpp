@@ -110,7 +110,7 @@ class SizeSweepReader {
   SizeSweep read() {
     std::vector<std::string> known{"description", "dial",   "unit",    "cullers",
                                    "values",      "cost",   "because", "resolution",
-                                   "frames",      "scenes", "notes"};
+                                   "frames",      "scenes", "notes",   "off_knee"};
     known.insert(known.end(), pass_keys.begin(), pass_keys.end());
     refuse_unknown_keys(root_, known, "a size sweep", file_);
     sweep_.description = required_text(root_, "description", "a size sweep", file_);
@@ -120,7 +120,8 @@ class SizeSweepReader {
     sweep_.cost = read_cost(root_, file_);
     sweep_.values = read_values(root_, file_);
     read_methods();
-    read_notes();
+    read_texts("notes", "text", &SizeMethod::note);
+    read_texts("off_knee", "because", &SizeMethod::off_knee);
     read_blocks();
     return std::move(sweep_);
   }
@@ -138,18 +139,20 @@ class SizeSweepReader {
     }
   }
 
-  void read_notes() {
-    const toml::array* const notes = tables(root_, "notes", file_);
-    if (notes == nullptr) return;
-    for (const toml::node& node : *notes) {
+  /// Tables `list`, each with a culler and a text for it under `key`.
+  void read_texts(const std::string& list, const std::string& key, std::string SizeMethod::*text) {
+    const toml::array* const entries = tables(root_, list, file_);
+    if (entries == nullptr) return;
+    const std::string what = "[[" + list + "]]";
+    for (const toml::node& node : *entries) {
       const toml::table& table = *node.as_table();
-      refuse_unknown_keys(table, {"culler", "text"}, "[[notes]]", file_);
-      const std::string culler = required_text(table, "culler", "[[notes]]", file_);
+      refuse_unknown_keys(table, {"culler", key}, what, file_);
+      const std::string culler = required_text(table, "culler", what, file_);
       const auto method = std::ranges::find(sweep_.methods, culler, &SizeMethod::culler);
       if (method == sweep_.methods.end()) {
         throw InputError(place(file_, node) + ": cullers has no " + culler);
       }
-      method->note = required_text(table, "text", "[[notes]]", file_);
+      (*method).*text = required_text(table, key, what, file_);
     }
   }
 

@@ -19,6 +19,9 @@
 //   [[notes]]
 //   culler = "frustum.octree"      name of one of the cullers
 //   text = "…"                     what is to be known of its default
+//   [[off_knee]]                   only for a default that cannot be the knee
+//   culler = "frustum.octree"
+//   because = "…"                  why it is the default nevertheless
 //
 // Each scene is a block as in a matrix, with its anchors, and its cells are cells like any other.
 #pragma once
@@ -46,7 +49,7 @@ struct SizeMethod {
   std::string parameter;            // the one that the dial turns
   std::vector<std::string> chains;  // canonical, one for each value
   std::size_t default_value = 0;    // by index: what the culler declares
-  std::string note;
+  std::string note, off_knee;       // off_knee: why the default is not the knee; else ""
 };
 
 struct SizeSweep {

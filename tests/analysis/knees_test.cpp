@@ -36,12 +36,18 @@ SizeSweep sweep_on(const std::vector<std::string>& scenes, SizeCost cost) {
 struct Measured {
   double efficiency = 1.0;
   std::uint64_t bytes = 0, false_px = 0;
+  double uncertain = 0.001;  // the interval reaches so far to both sides, as a share
 };
 
 /// A block whose cells are those of the sweep's only method.
 BlockSummary block_of(const SizeSweep& sweep, const std::vector<Measured>& measured) {
   BlockSummary block;
-  block.context = {{"cpu", "a processor"}, {"date", "2026-01-02"}};
+  block.context = {{"cpu", "a processor"},
+                   {"date", "2026-01-02"},
+                   {"compiler", "g++ 1"},
+                   {"revision", "abc"},
+                   {"dirty", "no"}};
+  block.threads = 2;
   for (std::size_t i = 0; i < measured.size(); ++i) {
     CellSummary cell;
     cell.canonical = sweep.methods.front().chains[i];
@@ -49,10 +55,12 @@ BlockSummary block_of(const SizeSweep& sweep, const std::vector<Measured>& measu
     cell.bytes = measured[i].bytes;
     cell.false_px = measured[i].false_px;
     cell.build_ms = 2.0;
+    cell.rounds = 7;
     const double e = measured[i].efficiency;
-    cell.efficiency = {e, 0.99 * e, 1.01 * e};
+    const double wide = measured[i].uncertain;
+    cell.efficiency = {e, e / (1.0 + wide), e * (1.0 + wide)};
     cell.update_us.median = {0.0, 0.0, 0.0};
-    cell.cull_us.median = {100.0 / e, 99.0 / e, 101.0 / e};
+    cell.cull_us.median = {100.0 / e, 100.0 / e / (1.0 + wide), 100.0 / e * (1.0 + wide)};
     block.cells.push_back(cell);
   }
   return block;
@@ -87,6 +95,40 @@ TEST(Knees, AModelThatIsWrongInMorePixelsThanTheBestIsNoKnee) {
   EXPECT_EQ(*curve.knee, 1U);
 }
 
+TEST(Knees, AModelWhoseIntervalReachesFivePercentMayBeTheKnee) {
+  const SizeCurve curve = curve_of(
+      {{0.60, 10, 0, 0.02}, {0.75, 20, 0, 0.02}, {0.76, 40, 0, 0.02}, {0.80, 80, 0, 0.01}});
+  ASSERT_TRUE(curve.knee);
+  EXPECT_EQ(*curve.knee, 1U) << ".75 / .80 is .9375, and .765 / .80 is .956";
+  EXPECT_EQ(curve.may_be_knee, (std::vector<std::size_t>{1, 2, 3}));
+}
+
+TEST(Knees, NothingLargerThanAModelThatIsCertainlyWithinFivePercentMayBeTheKnee) {
+  const SizeCurve curve = curve_of(
+      {{0.60, 10, 0, 0.02}, {0.75, 20, 0, 0.02}, {0.79, 40, 0, 0.01}, {0.80, 80, 0, 0.01}});
+  EXPECT_EQ(curve.may_be_knee, (std::vector<std::size_t>{1, 2}));
+}
+
+TEST(Knees, ARerunWithinTheIntervalsRefutesNoDefault) {
+  const SizeSweep sweep = sweep_on({"one", "two"}, SizeCost::decision_us);
+  for (const double other : {0.945, 0.955}) {  // the default is the third value
+    const BlockSummary block = block_of(
+        sweep, {{0.6, 10, 0, 0.02}, {other, 20, 0, 0.02}, {0.99, 40, 0, 0.02}, {1.0, 80, 0, 0.02}});
+    const SizeVerdict verdict = knees_of(sweep, {block, block}).verdicts.front();
+    EXPECT_EQ(*verdict.common.knee, 1U) << other;
+    EXPECT_TRUE(verdict.default_is_knee()) << other;
+  }
+}
+
+TEST(Knees, FewerThanThreeRoundsHaveNoInterval) {
+  const SizeSweep sweep = sweep_on({"one", "two"}, SizeCost::frame_ms);
+  BlockSummary block = block_of(
+      sweep, {{0.60, 10, 0, 0.5}, {0.75, 20, 0, 0.5}, {0.79, 40, 0, 0.5}, {0.80, 80, 0, 0.5}});
+  for (CellSummary& cell : block.cells) cell.rounds = 1;
+  const SizeVerdict verdict = knees_of(sweep, {block, block}).verdicts.front();
+  EXPECT_EQ(verdict.common.may_be_knee, (std::vector<std::size_t>{2}));
+}
+
 TEST(Knees, SmallerIsWhatHoldsFewerBytesWhateverTheOrderOfTheValues) {
   const SizeCurve curve = curve_of({{0.80, 80, 0}, {0.80, 40, 0}, {0.79, 20, 0}, {0.30, 10, 0}});
   EXPECT_EQ(*curve.knee, 2U);
@@ -112,6 +154,7 @@ TEST(Knees, TheCommonKneeIsThatOfTheGeometricMean) {
   std::vector<BlockSummary> blocks{
       block_of(sweep, {{0.96, 1, 0}, {0.97, 2, 0}, {0.99, 3, 0}, {1.00, 4, 0}}),
       block_of(sweep, {{0.20, 1, 0}, {0.25, 2, 0}, {0.40, 3, 0}, {0.41, 4, 0}})};
+  blocks[1].context["dirty"] = "yes";
   blocks[1].mixed_context["date"] = {"2026-01-02", "2026-01-04"};
   const SizeResult result = knees_of(sweep, blocks);
   const SizeVerdict& verdict = result.verdicts.front();
@@ -122,8 +165,11 @@ TEST(Knees, TheCommonKneeIsThatOfTheGeometricMean) {
   EXPECT_NEAR(verdict.common.points[3].efficiency.value, std::sqrt(1.00 * 0.41), 1e-12);
   EXPECT_EQ(verdict.common.points[3].bytes, 8U) << "of both scenes";
   EXPECT_TRUE(verdict.default_is_knee());
-  EXPECT_EQ(result.machine, "a processor");
-  EXPECT_EQ(result.date, "2026-01-02, 2026-01-04") << "of all that was measured";
+  EXPECT_EQ(result.provenance.at("cpu"), "a processor");
+  EXPECT_EQ(result.provenance.at("date"), "2026-01-02, 2026-01-04") << "of all that was measured";
+  EXPECT_EQ(result.provenance.at("rounds"), "7");
+  EXPECT_EQ(result.provenance.at("threads"), "2");
+  EXPECT_EQ(result.provenance.at("revision"), "abc, abc+") << "one block with changes since";
   EXPECT_TRUE(result.is_complete());
 }
 
@@ -152,16 +198,21 @@ TEST(Knees, NothingMeasuredIsNoKnee) {
 }
 
 TEST(KneesFile, IsWrittenOnlyWhenNothingIsMissing) {
-  const SizeSweep sweep = sweep_on({"one", "two"}, SizeCost::frame_ms);
+  SizeSweep sweep = sweep_on({"one", "two"}, SizeCost::frame_ms);
+  sweep.methods.front().off_knee = "it is little";
   const BlockSummary whole =
       block_of(sweep, {{0.5, 1, 0}, {0.79, 2, 0}, {0.80, 3, 0}, {0.80, 4, 0}});
   const std::string text = knees_text({knees_of(sweep, {whole, whole})});
-  EXPECT_NE(text.find("culler = \"test.tree\"\nparameter = \"depth\"\ndefault = \"4\"\nknee = "
-                      "\"2\"\nsweep = \"test_depth\"\ncost = \"frame_ms\"\nmachine = \"a "
-                      "processor\"\ndate = \"2026-01-02\""),
-            std::string::npos)
-      << text;
-  EXPECT_NE(text.find("scene = \"two\"\nknee = \"2\"\nbest = \"4\""), std::string::npos) << text;
+  for (const char* const part :
+       {"culler = \"test.tree\"\nparameter = \"depth\"\nchain = \"test.tree[depth=4]\"\ndefault = "
+        "\"4\"\nknee = \"2\"\nmay_be_knee = [\"2\"]\noff_knee = \"it is little\"\nsweep = "
+        "\"test_depth\"\ncost = "
+        "\"frame_ms\"\ncpu = \"a processor\"\ncompiler = \"g++ 1\"\nrevision = \"abc\"\ndate = "
+        "\"2026-01-02\"\nrounds = \"7\"\nthreads = \"2\"\n",
+        "scene = \"two\"\nknee = \"2\"\nbest = \"4\"\ndefault_of_best = 1.0\n",
+        "default_bytes = 3\n"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+  }
   BlockSummary part = whole;
   part.cells.pop_back();
   try {

@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <regex>
 #include <set>
 
 #include "algorithms/all_cullers.h"
 #include "common/scene/error.h"
 #include "experiments/analysis/knees_file.h"
+#include "experiments/matrix/size_coverage.h"
 #include "tests/experiments/temporary_folder.h"
 
 namespace vislab {
@@ -130,12 +132,63 @@ TEST_F(SizeSweepTest, DefaultsAreTheKneesThatAreCommitted) {
     };
     EXPECT_EQ(chain(knee.default_value), registry_.canonical(knee.culler))
         << what << " has another default than data/knees.toml says";
-    if (knee.knee != knee.default_value) {
-      EXPECT_FALSE(knee.note.empty()) << what << " is not at its knee, and no note says why";
-    }
+    EXPECT_EQ(chain(knee.default_value), knee.chain) << what << " was measured as another";
+    const bool may_be = std::ranges::count(knee.may_be_knee, knee.default_value) == 1;
+    EXPECT_EQ(may_be, knee.off_knee.empty())
+        << what
+        << (may_be ? " may be at its knee, and a reason says why it is not"
+                   : " has a default that cannot be its knee, and no reason says why");
+    EXPECT_EQ(std::ranges::count(knee.may_be_knee, knee.knee), 1) << what;
     EXPECT_GE(knee.scenes.size(), 2U) << what;
-    EXPECT_FALSE(knee.machine.empty()) << what << " does not say what measured it";
-    EXPECT_FALSE(knee.date.empty()) << what << " does not say when it was measured";
+    for (const auto& [name, text] : knee.provenance) {
+      EXPECT_FALSE(text.empty()) << what << " does not say its " << name;
+    }
+  }
+}
+
+TEST_F(SizeSweepTest, EverySizeOfAModelIsSweptOrHasAReason) {
+  const std::vector<SizeSweep> sweeps =
+      load_size_sweeps(repository / "experiments" / "model_size", registry_);
+  const fs::path file = repository / "experiments" / "model_size" / "coverage" / "entries.toml";
+  const SizeCoverage coverage = size_coverage(sweeps, registry_, file);
+  EXPECT_GE(coverage.with_sweep, 20U);
+  EXPECT_NE(coverage.text().find("leaf_size of frustum.bvh (by default"), std::string::npos)
+      << coverage.text();
+}
+
+TEST_F(SizeSweepTest, ASizeWithoutSweepAndReasonIsNamedAsIsOneWithBoth) {
+  const std::vector<SizeSweep> sweeps =
+      load_size_sweeps(repository / "experiments" / "model_size", registry_);
+  const auto refused = [&](const std::string& text) {
+    try {
+      size_coverage(sweeps, registry_, folder_.write("entries.toml", text));
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(refused("").find("area of detail.screen_size has no size sweep"), std::string::npos)
+      << refused("");
+  const std::string both = "[[without]]\ncullers = [\"frustum.octree\"]\nbecause = \"so\"\n";
+  EXPECT_NE(refused(both + "parameter = \"depth\"\n").find("has a size sweep"), std::string::npos);
+  EXPECT_NE(refused(both + "parameter = \"dept\"\n").find("there is no dept of"),
+            std::string::npos);
+  EXPECT_NE(refused(both).find("needs parameter, cullers and because"), std::string::npos);
+}
+
+// What was measured stands in cells; written down beside them it is soon that of another program.
+TEST_F(SizeSweepTest, LimitsAndNotesHoldNoFiguresThatWereMeasured) {
+  const std::regex figure("\\.[0-9]{2}|[0-9] ?%");
+  for (const auto& [name, entry] : registry_.entries()) {
+    EXPECT_FALSE(std::regex_search(entry.info.limits, figure)) << name << ": " << entry.info.limits;
+  }
+  for (const SizeSweep& sweep :
+       load_size_sweeps(repository / "experiments" / "model_size", registry_)) {
+    for (const SizeMethod& method : sweep.methods) {
+      for (const std::string& text : {method.note, method.off_knee}) {
+        EXPECT_FALSE(std::regex_search(text, figure)) << sweep.name << ": " << text;
+      }
+    }
   }
 }
 

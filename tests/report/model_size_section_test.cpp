@@ -21,6 +21,7 @@ SizeResult fabricated_sizes() {
   verdict.method.parameter = "leaf_size";
   verdict.method.chains = {"a", "b", "c"};
   verdict.method.default_value = 0;
+  verdict.method.off_knee = "The tree is small beside the rest";
   verdict.method.note = "The paper takes 64";
   const auto point = [](double relative, std::uint64_t bytes) {
     SizePoint made;
@@ -37,6 +38,7 @@ SizeResult fabricated_sizes() {
     curve.points = {point(0.8, 100), point(0.97, 200), point(1.0, 400)};
     curve.best = 2;
     curve.knee = 1;
+    curve.may_be_knee = {1};
     verdict.scenes.push_back(curve);
   }
   verdict.common = verdict.scenes.front();
@@ -56,10 +58,23 @@ TEST(ModelSizeSection, ShowsCurveAndKneeBesideTheDefault) {
   const std::string text = section_of({fabricated_sizes()});
   EXPECT_NE(text.find("| leaf size | `test.tree` | 8 · 8 | 8 | 64 |"), std::string::npos) << text;
   EXPECT_NE(text.find("**knee at 8**; the default has 80"), std::string::npos) << text;
+  EXPECT_NE(text.find("of the best: The tree is small beside the rest"), std::string::npos) << text;
   EXPECT_NE(text.find("| **8** (knee) |"), std::string::npos) << text;
   EXPECT_NE(text.find("| 64 (default) |"), std::string::npos) << text;
   EXPECT_NE(text.find("The paper takes 64"), std::string::npos) << text;
   EXPECT_NE(text.find("model-size-1-1.svg"), std::string::npos) << text;
+}
+
+TEST(ModelSizeSection, ADefaultThatMayBeTheKneeIsSaidToBeSoBesideTheOthers) {
+  SizeResult result = fabricated_sizes();
+  SizeVerdict& verdict = result.verdicts[0];
+  verdict.method.default_value = 2;
+  verdict.common.may_be_knee = {1, 2};
+  const std::string text = section_of({result});
+  EXPECT_NE(text.find("| leaf size | `test.tree` | 8 · 8 | 8 or 1 | 1 |"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("| 1 (may be the knee) (default) |"), std::string::npos) << text;
+  EXPECT_NE(text.find("may be the knee |"), std::string::npos) << text;
 }
 
 TEST(ModelSizeSection, AMissingCellIsAGapWithItsReason) {
