@@ -68,9 +68,8 @@ endfunction()
 #   vislab::CullerEntry vislab::cullers::FAMILY_name();
 # A family whose only culler bears its own name (none, oracle) is called by that name alone.
 # SOURCES are files that several cullers of the family share. USES names folders of algorithms/ whose
-# code the answers depend on too (for peers), so that what is mended there makes them stale; the
-# rasteriser's makes those stale that have it among their LIBRARIES. USES_TRUTH: the answers are the judge's
-# (oracles), so that a mended judge does.
+# code the answers depend on too (for peers), so that what is mended there makes them stale.
+# USES_TRUTH: the answers are the judge's (oracles), so that a mended judge does.
 function(vislab_add_culler_family family)
   cmake_parse_arguments(ARG "USES_TRUTH" "" "CULLERS;SOURCES;LIBRARIES;USES" ${ARGN})
   set(files ${ARG_SOURCES})
@@ -88,9 +87,6 @@ function(vislab_add_culler_family family)
   get_filename_component(folders "${CMAKE_CURRENT_SOURCE_DIR}" NAME)
   list(APPEND folders ${ARG_USES})
   list(TRANSFORM folders PREPEND algorithms/)
-  if("vislab_raster" IN_LIST ARG_LIBRARIES)
-    list(APPEND folders common/raster)
-  endif()
   list(JOIN folders "+" folders)
   set_property(GLOBAL APPEND PROPERTY VISLAB_CULLER_FAMILIES "${family}:${folders}")
   if(ARG_USES_TRUTH)

@@ -1,5 +1,5 @@
 # Script: writes a C++ file with one hash for the sources of every culler family and one for the judge.
-#   cmake -D SOURCE_DIR=… -D FAMILIES=a:algorithms/a,b:algorithms/b+common/c -D TRUTH_FAMILIES=b -D OUTPUT=file -P WriteSourceHashes.cmake
+#   cmake -D SOURCE_DIR=… -D FAMILIES=a:algorithms/a,b:algorithms/b+algorithms/c -D TRUTH_FAMILIES=b -D OUTPUT=file -P WriteSourceHashes.cmake
 # A family's answers depend on its own folders and on the layers below them, those of TRUTH_FAMILIES on the
 # judge too; the judge's on itself and the same layers. A mended family gets another hash, the others keep
 # theirs.
@@ -21,7 +21,7 @@ function(hash_folders result)
   set(${result} "${hash}" PARENT_SCOPE)
 endfunction()
 
-set(layers common/simd common/geometry common/scene common/spatial common/render common/culler)
+set(layers common/simd common/geometry common/scene common/spatial common/raster common/render common/culler)
 string(REPLACE "," ";" families "${FAMILIES}")
 string(REPLACE "," ";" truth_families "${TRUTH_FAMILIES}")
 set(entries "")

@@ -90,8 +90,6 @@ class FrustumTester {
   std::uint64_t plane_tests() const { return plane_tests_; }
   /// Boxes decided without any plane test, by meta volumes or motion coherence.
   std::uint64_t skipped_tests() const { return skipped_tests_; }
-  /// Distances to middle planes that the octant test computed to save plane tests.
-  std::uint64_t octant_tests() const { return octant_tests_; }
   /// Appends the counters that belong to the switches in use.
   void append_counters(Counters& counters) const;
 
@@ -126,7 +124,7 @@ class FrustumTester {
   double eye_to_near_m_ = 0.0;  // by perspective cameras only; else infinite
   std::uint64_t plane_tests_ = 0;
   std::uint64_t skipped_tests_ = 0;
-  std::uint64_t octant_tests_ = 0;
+  std::uint64_t octant_tests_ = 0;  // distances to middle planes, computed to save plane tests
 };
 
 }  // namespace vislab::frustum_culling

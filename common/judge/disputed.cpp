@@ -39,6 +39,12 @@ bool Disputes::operator()(const glm::dvec2& window_px, TriangleId a, TriangleId 
          disputed_relative_depth * std::max(std::abs(depth_a), std::abs(depth_b));
 }
 
+bool Disputes::excuse_pixel(const glm::dvec2& window_px, TriangleId full, TriangleId drawn,
+                            TriangleId seen) {
+  if ((*this)(window_px, full, drawn)) return true;
+  return seen != full && (*this)(window_px, full, seen) && (*this)(window_px, seen, drawn);
+}
+
 bool is_disputed(const Frame& frame, const Scene& scene, const glm::dvec2& window_px, TriangleId a,
                  TriangleId b) {
   return Disputes(frame, scene)(window_px, a, b);

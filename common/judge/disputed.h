@@ -24,6 +24,13 @@ class Disputes {
   /// As is_disputed().
   bool operator()(const glm::dvec2& window_px, TriangleId a, TriangleId b);
 
+  /// Is a pixel excused that shows `drawn` where the full image shows `full` and a ray hits `seen`?
+  /// It is if the two images' triangles are disputed; or, where the full image itself differs from
+  /// the ray, if the ray's triangle is disputed with both of them: at its edge the rasteriser may
+  /// see what lies behind it.
+  bool excuse_pixel(const glm::dvec2& window_px, TriangleId full, TriangleId drawn,
+                    TriangleId seen);
+
  private:
   static constexpr std::size_t slot_count = 256;
 

@@ -36,11 +36,7 @@ struct ImageJudge::Impl {
       if (full[i] == ids[i]) continue;
       const glm::dvec2 window_px(static_cast<double>(i % width) + 0.5,
                                  static_cast<double>(i / width) + 0.5);
-      const TriangleId seen = truth->ids[i];
-      const bool excused = disputes(window_px, full[i], ids[i]) ||
-                           (seen != full[i] && disputes(window_px, full[i], seen) &&
-                            disputes(window_px, seen, ids[i]));
-      ++counts[excused ? 0 : 1];
+      ++counts[disputes.excuse_pixel(window_px, full[i], ids[i], truth->ids[i]) ? 0 : 1];
     }
     return counts;
   }

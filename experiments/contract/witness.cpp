@@ -62,7 +62,6 @@ std::vector<TriangleId> ids_of(OsMesaDevice& device, const Scene& scene, const F
   return device.read_ids();
 }
 
-/// Pixels are excused as the image judge excuses them.
 Comparison by_device(Scenario& scenario, const Frame& frame, const VisibleSet& drawn,
                      std::span<const ObjectId> one_sided) {
   const Scene& scene = scenario.scene();
@@ -79,11 +78,9 @@ Comparison by_device(Scenario& scenario, const Frame& frame, const VisibleSet& d
   Disputes disputes(frame, scene);
   for (std::size_t i = 0; i < images.right.size(); ++i) {
     const TriangleId right = images.right[i];
-    const glm::dvec2 centre = centre_of(i, frame.viewport);
-    const bool excused = disputes(centre, right, images.drawn[i]) ||
-                         (rays[i] != right && disputes(centre, right, rays[i]) &&
-                          disputes(centre, rays[i], images.drawn[i]));
-    images.wrong.push_back(right != images.drawn[i] && !excused);
+    const TriangleId shown = images.drawn[i];
+    images.wrong.push_back(right != shown && !disputes.excuse_pixel(centre_of(i, frame.viewport),
+                                                                    right, shown, rays[i]));
   }
   return images;
 }
