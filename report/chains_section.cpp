@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iterator>
 #include <set>
+#include <tuple>
+#include <utility>
 
 #include "experiments/analysis/chains.h"
 #include "report/comparison_sections.h"
@@ -53,6 +55,54 @@ std::string worth_text(const ChainChoice& choice) {
     return "cannot be told: `none` was not measured against itself";
   }
   return "no faster than drawing everything, as far as can be told";
+}
+
+/// Of one scene the run to show, and the others.
+struct SceneChoice {
+  const ChainChoice* shown = nullptr;
+  std::vector<const ChainChoice*> others;
+};
+
+/// Which of two runs of a scene tells more of what there is to choose from?
+bool tells_more(const ChainChoice& a, const ChainChoice& b) {
+  const auto weight = [](const ChainChoice& choice) {
+    return std::tuple(choice.best != nullptr, choice.families.size(), choice.block->cells.size(),
+                      choice.block->frames);
+  };
+  return weight(a) > weight(b);
+}
+
+/// In the order in which the scenes come first.
+std::vector<SceneChoice> by_scene(const std::vector<ChainChoice>& choices) {
+  std::vector<SceneChoice> scenes;
+  for (const ChainChoice& choice : choices) {
+    const auto known = std::ranges::find_if(scenes, [&](const SceneChoice& scene) {
+      return scene.shown->block->scene == choice.block->scene;
+    });
+    if (known == scenes.end()) {
+      scenes.push_back({&choice, {}});
+      continue;
+    }
+    known->others.push_back(&choice);
+    if (tells_more(choice, *known->shown)) std::swap(known->shown, known->others.back());
+  }
+  return scenes;
+}
+
+/// Is the method the fastest on this run as well, or not to be told from it?
+bool is_best_on(const ChainChoice& run, const CellSummary& method) {
+  const auto is_it = [&](const CellSummary* cell) { return cell->canonical == method.canonical; };
+  return run.best != nullptr && (is_it(run.best) || std::ranges::any_of(run.undecided, is_it));
+}
+
+/// "(3 of 5 other runs alike)", or empty.
+std::string others_text(const SceneChoice& scene) {
+  if (scene.others.empty()) return {};
+  const auto alike = std::ranges::count_if(scene.others, [&](const ChainChoice* run) {
+    return scene.shown->best != nullptr && is_best_on(*run, *scene.shown->best);
+  });
+  return " (" + std::to_string(alike) + " of " + std::to_string(scene.others.size()) +
+         (scene.others.size() == 1 ? " other run" : " other runs") + " alike)";
 }
 
 Fields choice_fields(const std::string& place, const ChainChoice& choice) {
@@ -126,11 +176,15 @@ void add_chain_fields(const ReportInput& input, Fields& fields) {
   for (const ChainChoice& choice : choices) {
     for (const auto& [family, cell] : choice.families) families.insert(family);
   }
-  for (const ChainChoice& choice : choices) {
+  bool has_others = false;
+  for (const SceneChoice& scene : by_scene(choices)) {
+    const ChainChoice& choice = *scene.shown;
     const std::string place = place_of(choices, *choice.block);
-    rows.push_back(choice_fields(place, choice));
+    rows.push_back(choice_fields(place + others_text(scene), choice));
     if (choice.best != nullptr) family_rows.push_back(family_row(place, choice, families));
+    has_others = has_others || !scene.others.empty();
   }
+  fields.flag("has_other_choices", has_others);
   const auto tallies = tally_families(choices);
   for (const std::string& family : families) {
     names.push_back(tally_fields(family, tallies.at(family)));

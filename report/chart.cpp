@@ -490,7 +490,7 @@ std::string chart_script(const BlockSummary& block, const std::filesystem::path&
   std::ostringstream script;
   script.precision(12);
   ChartWriter writer(block, takes, script);
-  script << "reset\nset terminal svg size " << chart_width << ',' << writer.height()
+  script << "reset\nunset key\nset terminal svg size " << chart_width << ',' << writer.height()
          << " noenhanced font 'Noto Sans,11' background '#FFFFFF'\nset output "
          << quoted(file.string()) << "\nset multiplot\n";
   writer.write();

@@ -9,6 +9,8 @@
 #include "common/scene/error.h"
 #include "report/chart.h"
 #include "report/dial_curves.h"
+#include "report/family_measures.h"
+#include "report/family_stability.h"
 #include "report/finding.h"
 #include "report/format.h"
 
@@ -16,14 +18,7 @@ namespace vislab {
 namespace {
 
 constexpr std::size_t charts_a_family = 2;
-
-std::string family_of_stage(const std::string& name, const Registry* cullers) {
-  if (cullers != nullptr) {
-    const auto found = cullers->entries().find(name);
-    if (found != cullers->entries().end()) return found->second.info.family;
-  }
-  return name.substr(0, name.find('.'));
-}
+constexpr std::size_t missing_named = 4;  // a matrix
 
 /// Of a text that may hold the name of a dial instead of a value, and so need not be a chain.
 std::string last_name(const std::string& text) {
@@ -55,44 +50,16 @@ bool is_in(const std::vector<const BlockSummary*>& blocks, const BlockSummary& b
   return std::ranges::find(blocks, &block) != blocks.end();
 }
 
-struct FamilyOn {
-  std::vector<const CellSummary*> cells;  // judged, no anchors
-  const CellSummary* best = nullptr;      // without errors: the fastest, or leaves the least over
-  const CellSummary* worst = nullptr;     // with the most false pixels
-  std::size_t erring = 0;
-};
-
-double worth(const BlockSummary& block, const CellSummary& cell) {
-  return block.drawn ? cell.against_none.value : cell.over;
-}
-
-FamilyOn family_on(const BlockSummary& block, const std::string& family, const Registry* cullers) {
-  FamilyOn found;
-  for (const CellSummary& cell : block.cells) {
-    if (cell.anchor || !cell.judged || cell.status != ResultCell::Status::done) continue;
-    if (family_of(cell, cullers) != family) continue;
-    found.cells.push_back(&cell);
-    if (cell.false_px > 0 && (found.worst == nullptr || cell.false_px > found.worst->false_px)) {
-      found.worst = &cell;
-    }
-    if (!is_free_of_errors(cell)) {
-      ++found.erring;
-      continue;
-    }
-    if (cell.guarantee == Guarantee::erroneous || !(worth(block, cell) >= 0.0)) continue;
-    if (found.best == nullptr || worth(block, cell) < worth(block, *found.best)) {
-      found.best = &cell;
-    }
-  }
-  return found;
-}
-
 /// Does a block of the same scene say more of the family: with more methods, of these drawn, in
 /// more frames?
 bool tells_more(const FamilyOn& a, const BlockSummary& on_a, const FamilyOn& b,
                 const BlockSummary& on_b) {
-  return std::tuple(a.cells.size(), on_a.drawn, on_a.frames) >
-         std::tuple(b.cells.size(), on_b.drawn, on_b.frames);
+  return std::tuple(a.methods.size(), on_a.drawn, on_a.frames) >
+         std::tuple(b.methods.size(), on_b.drawn, on_b.frames);
+}
+
+bool is_among(const FamilyOn& on, const CellSummary& cell) {
+  return std::ranges::find(on.methods, &cell, &FamilyMethod::cell) != on.methods.end();
 }
 
 Fields method_row(const CullerInfo& info) {
@@ -111,15 +78,19 @@ Fields best_row(const std::vector<BlockSummary>& blocks, const BlockSummary& blo
                 const FamilyOn& on) {
   Fields row;
   row.values["place"] = place_of(blocks, block);
-  row.values["best"] = on.best != nullptr ? markdown_code(on.best->culler) : "none";
-  const auto best = [&](auto&& text) { return on.best != nullptr ? text(*on.best) : "–"; };
-  row.values["against_none"] =
-      best([](const CellSummary& c) { return format_estimate(c.against_none); });
-  row.values["efficiency"] =
-      best([](const CellSummary& c) { return format_number(c.efficiency.value); });
-  row.values["over"] = best([](const CellSummary& c) { return format_number(c.over); });
-  row.values["recall"] = best([](const CellSummary& c) { return format_percent(c.recall); });
-  row.values["erring"] = std::to_string(on.erring) + " of " + std::to_string(on.cells.size());
+  for (const char* name : {"best", "against", "ratio", "efficiency", "over", "recall"}) {
+    row.values[name] = "–";
+  }
+  if (on.best != nullptr) {
+    const CellSummary& best = *on.best->cell;
+    row.values["best"] = markdown_code(best.culler);
+    row.values["against"] = markdown_code(on.best->against());
+    row.values["ratio"] = format_estimate(on.best->ratio);
+    row.values["efficiency"] = format_number(best.efficiency.value);
+    row.values["over"] = format_number(best.over);
+    row.values["recall"] = format_percent(best.recall);
+  }
+  row.values["erring"] = std::to_string(on.erring) + " of " + std::to_string(on.methods.size());
   row.values["worst"] = on.worst != nullptr
                             ? markdown_code(on.worst->culler) + ", " +
                                   format_percent(static_cast<double>(on.worst->false_px) /
@@ -156,6 +127,32 @@ std::string sweeps_not_run(const ReportInput& input, const std::string& family) 
          markdown_code("vislab run stress") + " all sweeps of all families.";
 }
 
+/// "Of the matrix `m` 12 of 45 cells are here; missing of this family: `a` (3), `b` (1) and 2 more"
+std::vector<Fields> matrix_gaps(const ReportInput& input, const std::string& family) {
+  std::vector<Fields> gaps;
+  for (const MatrixShare& matrix : input.matrices) {
+    std::string names;
+    std::size_t methods = 0;
+    for (const auto& [chain, cells] : matrix.missing) {
+      if (family_of_stage(last_name(chain), input.cullers) != family) continue;
+      if (++methods > missing_named) continue;
+      names += (names.empty() ? "" : ", ") + markdown_code(chain) + " (" + std::to_string(cells) +
+               (cells == 1 ? " cell)" : " cells)");
+    }
+    if (methods == 0) continue;
+    if (methods > missing_named) {
+      names += " and " + std::to_string(methods - missing_named) + " more methods";
+    }
+    gaps.emplace_back();
+    gaps.back().values["matrix"] = markdown_code(matrix.name);
+    gaps.back().values["share"] =
+        format_count(matrix.present) + " of " + format_count(matrix.planned);
+    gaps.back().values["methods"] = names;
+    gaps.back().values["command"] = markdown_code("vislab run " + matrix.name);
+  }
+  return gaps;
+}
+
 /// One row for each sweep that a method of the family took part in.
 std::vector<Fields> break_rows(const ReportInput& input, const std::string& family) {
   std::vector<Fields> rows;
@@ -190,28 +187,26 @@ std::string saving_sentence(const std::vector<BlockSummary>& blocks,
   std::size_t drawn = 0;
   std::size_t saving = 0;
   const BlockSummary* most_block = nullptr;
-  const CellSummary* most = nullptr;
+  const FamilyMethod* most = nullptr;
   for (const auto& [block, found] : on) {
     if (!block->drawn || found.best == nullptr) continue;
     ++drawn;
-    const Estimate& ratio = found.best->against_none;
-    const double bar = block->noise.measured() ? std::min(1.0, block->noise.low) : 1.0;
-    if (!(ratio.high < bar)) continue;
+    if (!saves_time(*block, *found.best)) continue;
     ++saving;
-    if (most == nullptr || ratio.value < most->against_none.value) {
+    if (most == nullptr || found.best->ratio.value < most->ratio.value) {
       most = found.best;
       most_block = block;
     }
   }
   if (drawn == 0) return {};
-  std::string text =
-      "On " + std::to_string(saving) + " of the " + std::to_string(drawn) +
-      " scenes and paths that were drawn, a method of this family saves time without "
-      "errors, beyond the noise";
+  std::string text = "On " + std::to_string(saving) + " of the " + std::to_string(drawn) +
+                     " scenes and paths that were drawn, a method of this family saves time "
+                     "without errors, beyond the noise, of what drawing takes without it";
   if (most == nullptr) return text + ".";
-  return text + "; most on " + place_of(blocks, *most_block) + ", where " +
-         markdown_code(most->culler) + " saves " + format_percent(1.0 - most->against_none.value) +
-         " of the frame.";
+  text += "; most on " + place_of(blocks, *most_block) + ", where " +
+          markdown_code(most->cell->culler) + " saves " + format_percent(1.0 - most->ratio.value);
+  if (most->before == nullptr) return text + " of the frame.";
+  return text + " of what " + markdown_code(most->against()) + " alone takes.";
 }
 
 /// Pictures of the family's best method on the block of its first chart, and of the method with the
@@ -226,7 +221,7 @@ void add_pictures(const ReportInput& input, const BlockSummary* charted,
   const BlockSummary* worst_block = nullptr;
   const CellSummary* worst = nullptr;
   for (const auto& [block, found] : on) {
-    if (block == charted && found.best != nullptr) wanted.emplace_back(block, found.best);
+    if (block == charted && found.best != nullptr) wanted.emplace_back(block, found.best->cell);
     if (found.worst == nullptr) continue;
     if (worst == nullptr || found.worst->false_px > worst->false_px) {
       worst = found.worst;
@@ -279,7 +274,7 @@ Fields chapter_fields(const ReportInput& input, const std::vector<const BlockSum
   for (const BlockSummary& block : input.blocks) {
     if (is_in(in_diagrams, block)) continue;
     FamilyOn found = family_on(block, family, input.cullers);
-    if (found.cells.empty()) continue;
+    if (found.methods.empty()) continue;
     const auto [known, is_new] = of_scene.emplace(block.scene, on.size());
     if (!is_new && tells_more(found, block, on[known->second].second, *on[known->second].first)) {
       known->second = on.size();
@@ -292,7 +287,9 @@ Fields chapter_fields(const ReportInput& input, const std::vector<const BlockSum
     best.push_back(best_row(input.blocks, *on[i].first, on[i].second));
   }
   fields.flag("has_family_best", !best.empty());
+  fields.lists["matrix_gaps"] = matrix_gaps(input, family);
   fields.values["saving"] = saving_sentence(input.blocks, on);
+  add_stability_fields(input, in_diagrams, family, fields);
   fields.lists["family_breaks"] = break_rows(input, family);
   fields.flag("has_family_breaks", !fields.lists["family_breaks"].empty());
   fields.values["sweeps_not_run"] = sweeps_not_run(input, family);
@@ -303,11 +300,6 @@ Fields chapter_fields(const ReportInput& input, const std::vector<const BlockSum
 }
 
 }  // namespace
-
-std::string family_of(const CellSummary& cell, const Registry* cullers) {
-  const std::vector<CullerSpec> chain = parse_chain(cell.canonical);
-  return chain.empty() ? "" : family_of_stage(chain.back().name, cullers);
-}
 
 FamilyTexts family_texts(const std::filesystem::path& templates, const Fields& fields) {
   std::set<std::filesystem::path> files;
@@ -358,19 +350,19 @@ std::vector<FamilyChart> family_charts(const ReportInput& input,
     std::vector<std::pair<Score, const BlockSummary*>> scored;
     for (const BlockSummary& block : input.blocks) {
       if (is_in(in_diagrams, block)) continue;
+      const FamilyOn on = family_on(block, family, input.cullers);
       std::vector<const CellSummary*> cells;
       for (const CellSummary* cell : charted_cells(block)) {
-        if (!cell->anchor && family_of(*cell, input.cullers) == family) cells.push_back(cell);
+        if (is_among(on, *cell)) cells.push_back(cell);
       }
       if (cells.empty()) continue;
       std::set<std::size_t> on_curves;
       for (const DialCurve& curve : dial_curves(cells)) {
         on_curves.insert(curve.cells.begin(), curve.cells.end());
       }
-      const FamilyOn on = family_on(block, family, input.cullers);
-      const double saving = on.best == nullptr || !on.best->against_none.measured()
+      const double saving = on.best == nullptr || !on.best->ratio.measured()
                                 ? -std::numeric_limits<double>::infinity()
-                                : -on.best->against_none.value;
+                                : -on.best->ratio.value;
       scored.emplace_back(Score(cells.size() + on_curves.size(), saving), &block);
     }
     std::ranges::stable_sort(scored, std::greater<>{},
@@ -388,8 +380,10 @@ std::vector<FamilyChart> family_charts(const ReportInput& input,
 std::string family_chart_script(const std::vector<FamilyChart>& charts, const Registry* cullers) {
   std::string script;
   for (const FamilyChart& chart : charts) {
+    const FamilyOn on = family_on(*chart.block, chart.family, cullers);
     script += chart_script(*chart.block, chart.file, [&](const CellSummary& cell) {
-      return family_of(cell, cullers) == chart.family;
+      return is_among(on, cell) ||
+             std::ranges::find(on.methods, &cell, &FamilyMethod::before) != on.methods.end();
     });
   }
   return script;

@@ -12,9 +12,6 @@
 
 namespace vislab {
 
-/// The family of the chain's last stage: what stands before it only prepares.
-std::string family_of(const CellSummary& cell, const Registry* cullers);
-
 /// What the report has of single families only, by family: the texts of the templates in the folder
 /// `templates`/FAMILY, in the order of their names, filled with `fields`. A family whose texts are
 /// all empty is not in it. Throws InputError like fill_template().
@@ -36,7 +33,8 @@ struct FamilyChart {
 
 /// For each family the blocks on which most of its methods have a point, those that lie on curves
 /// over a dial counting twice, and of these the ones on which the family saves most: at most two,
-/// of different scenes. Blocks `in_diagrams` are left out.
+/// of different scenes. Blocks `in_diagrams` are left out. Beside the family's methods stand the
+/// chains that they were added to.
 std::vector<FamilyChart> family_charts(const ReportInput& input,
                                        const std::vector<const BlockSummary*>& in_diagrams,
                                        const std::vector<std::string>& families);

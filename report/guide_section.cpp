@@ -1,4 +1,6 @@
-#include <cmath>
+#include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "experiments/analysis/guide.h"
 #include "report/comparison_sections.h"
@@ -49,6 +51,24 @@ Fields row_fields(const GuideRow& row) {
   return fields;
 }
 
+/// Of each scene the row of the run with most methods, then frames; in the order of the scenes.
+std::vector<const GuideRow*> rows_by_scene(const std::vector<GuideRow>& rows) {
+  const auto weight = [](const GuideRow& row) {
+    return std::pair(row.block->cells.size(), row.block->frames);
+  };
+  std::vector<const GuideRow*> shown;
+  for (const GuideRow& row : rows) {
+    const auto known = std::ranges::find_if(
+        shown, [&](const GuideRow* other) { return other->block->scene == row.block->scene; });
+    if (known == shown.end()) {
+      shown.push_back(&row);
+    } else if (weight(row) > weight(**known)) {
+      *known = &row;
+    }
+  }
+  return shown;
+}
+
 /// "Of the 12 methods that were right on all 9 scenes and paths, take `X`: …"
 std::string advice_text(const GuideAdvice& advice) {
   const GuideCandidate& choice = advice.choice;
@@ -78,7 +98,10 @@ std::vector<Fields> guide_fields(const std::vector<BlockSummary>& blocks) {
   for (const CullerGuide& guide : make_guides(blocks)) {
     Fields entry;
     entry.values["kind"] = kind_of(guide.culls);
-    for (const GuideRow& row : guide.rows) entry.lists["rows"].push_back(row_fields(row));
+    entry.values["run_count"] = std::to_string(guide.rows.size());
+    for (const GuideRow* row : rows_by_scene(guide.rows)) {
+      entry.lists["rows"].push_back(row_fields(*row));
+    }
     auto& advice = entry.lists["advice"];
     for (const GuideAdvice& one : guide.advice) {
       advice.emplace_back();

@@ -74,15 +74,16 @@ void add_introduction_fields(const ReportInput& input,
   auto& pictures = fields.lists["kinds_pictures"];
   auto& missing = fields.lists["kinds_missing"];
   if (!input.kinds_picture) return;
-  std::size_t most = 0;
+  std::pair<std::size_t, double> most{0, 0.0};  // kinds; of the same number, the least threshold
   std::string reason;
   std::size_t number = 0;
   for (const BlockSummary* block : candidates(input, in_diagrams)) {
     const std::string file = "kinds-" + std::to_string(++number) + ".png";
     try {
       const KindsPicture picture = input.kinds_picture(*block, work / file);
-      if (picture.kinds <= most) continue;
-      most = picture.kinds;
+      const std::pair shown(picture.kinds, -picture.detail_px);
+      if (shown <= most) continue;
+      most = shown;
       Fields entry;
       entry.values["file"] = file;
       entry.values["place"] = markdown_text(picture.place);
@@ -91,7 +92,6 @@ void add_introduction_fields(const ReportInput& input,
       entry.flag("is_partial", picture.kinds < all_kinds);
       entry.values["kinds"] = std::to_string(picture.kinds);
       pictures = {std::move(entry)};
-      if (most == all_kinds) break;
     } catch (const InputError& error) {
       if (reason.empty()) reason = error.what();
     }

@@ -68,7 +68,7 @@ std::string line_chart_script(const LineChart& line_chart, const std::filesystem
   const double height = bottom + panel_height + top_margin;
   std::ostringstream out;
   out.precision(12);
-  out << "reset\nset terminal svg size " << chart_width << ',' << height
+  out << "reset\nunset key\nset terminal svg size " << chart_width << ',' << height
       << " noenhanced font 'Noto Sans,11' background '#FFFFFF'\nset output "
       << quoted(file.string()) << "\nset multiplot\n"
       << "set border 3 lc rgb '#444444'\nset tics nomirror out scale 0.5\n"

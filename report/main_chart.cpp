@@ -99,7 +99,7 @@ class MainChart {
   }
 
   void write(const std::filesystem::path& file, std::ostream& out) const {
-    out << "reset\nset terminal svg size " << chart_width << ',' << height_
+    out << "reset\nunset key\nset terminal svg size " << chart_width << ',' << height_
         << " noenhanced font 'Noto Sans,11' background '#FFFFFF'\nset output "
         << quoted(file.string()) << "\nset multiplot\n";
     for (std::size_t i = 0; i < series_.size(); ++i) {

@@ -240,7 +240,7 @@ std::string size_chart_script(const SizeSweep& sweep, const SizeVerdict& verdict
                               const std::filesystem::path& file) {
   std::ostringstream script;
   script.precision(12);
-  script << "reset\n";
+  script << "reset\nunset key\n";
   SizeChart(sweep, verdict, script).write(file);
   return script.str();
 }

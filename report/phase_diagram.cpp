@@ -364,7 +364,7 @@ std::vector<PhaseDiagram> phase_diagrams(
 std::string phase_script(const PhaseDiagram& diagram, const std::filesystem::path& file) {
   std::ostringstream script;
   script.precision(12);
-  script << "reset\n";
+  script << "reset\nunset key\n";
   PhaseWriter(diagram, script).write(file);
   return script.str();
 }

@@ -184,6 +184,7 @@ void publish(const fs::path& work, const fs::path& folder) {
   };
   if (code) throw unwritable();
   if (fs::exists(work / persistence_file)) names.emplace_back(persistence_file);
+  if (fs::exists(work / main_chart_file)) names.emplace_back(main_chart_file);
   for (const std::string& name : names) {
     fs::copy_file(work / name, folder / (name + temporary), fs::copy_options::overwrite_existing,
                   code);

@@ -10,6 +10,7 @@
 #include "experiments/analysis/break_points.h"
 #include "experiments/analysis/errata.h"
 #include "experiments/analysis/knees.h"
+#include "experiments/analysis/matrix_share.h"
 #include "experiments/analysis/persistence.h"
 #include "experiments/analysis/published.h"
 #include "experiments/analysis/summary.h"
@@ -76,13 +77,15 @@ struct ReportInput {
   std::function<std::vector<MissingCell>(const BlockSummary& block)> missing_cells;
   /// Blocks of which no cell is in the results though their matrix was run.
   std::vector<MissingCell> missing_blocks;
+  /// The matrices of which any cell is in the results.
+  std::vector<MatrixShare> matrices;
   /// A cell's frame_ms by frame, each the median of its rounds. Throws InputError if the cell is no
   /// longer there. Empty function: no chart of them.
   std::function<std::vector<double>(const CellSummary& cell)> frame_times;
 };
 
-/// Writes index.html, report.pdf and, if hidden things were counted, persistence.json into `folder`
-/// (made if missing). They appear only when whole.
+/// Writes index.html, report.pdf, the chart of all families (main-chart.svg, if anything was drawn)
+/// and, if hidden things were counted, persistence.json into `folder` (made if missing). They appear only when whole.
 /// Runs pandoc, gnuplot and chromium; throws InputError that names the program that is missing or
 /// failed, or if there is nothing to report. `template_folder` is the repository's report/.
 void write_report(const ReportInput& input, const std::filesystem::path& template_folder,

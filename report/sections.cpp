@@ -142,6 +142,20 @@ std::vector<Fields> metric_fields() {
   return rows;
 }
 
+/// "`default` 120 of 137, `seeds` 3 of 447; all of `smoke`", or empty.
+std::string shares_of(const std::vector<MatrixShare>& matrices) {
+  std::string parts;
+  std::string whole;
+  for (const MatrixShare& matrix : matrices) {
+    std::string& list = matrix.present == matrix.planned ? whole : parts;
+    list += (list.empty() ? "" : ", ") + markdown_code(matrix.name);
+    if (matrix.present == matrix.planned) continue;
+    list += " " + format_of(matrix.present, matrix.planned);
+  }
+  if (whole.empty()) return parts;
+  return parts + (parts.empty() ? "" : "; ") + "all of " + whole;
+}
+
 std::size_t count_distinct(const std::vector<BlockSummary>& blocks, bool methods) {
   std::set<std::string> names;
   for (const BlockSummary& block : blocks) {
@@ -224,6 +238,8 @@ Fields report_fields(const ReportInput& input, const std::string& verdict_templa
     gaps.back().values["block"] = markdown_text(block.name);
     gaps.back().values["reason"] = markdown_text(block.reason);
   }
+  fields.flag("has_matrices", !input.matrices.empty());
+  fields.values["matrix_shares"] = shares_of(input.matrices);
   fields.flag("has_floors", !floors.empty());
   fields.flag("has_diagrams", !in_diagrams.empty());
   const FloorSum floor = floor_of(in_diagrams);

@@ -210,7 +210,7 @@ bool has_sweep_chart(const SweepResult& result) {
 std::string sweep_chart_script(const SweepResult& result, const std::filesystem::path& file) {
   std::ostringstream script;
   script.precision(12);
-  script << "reset\n";
+  script << "reset\nunset key\n";
   SweepChart(result, script).write(file);
   return script.str();
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <tuple>
 
 #include "common/culler/cell_walker.h"
 #include "common/geometry/frustum.h"
@@ -14,8 +15,8 @@ namespace vislab {
 namespace {
 
 constexpr double least_threshold_px = 4.0;
-constexpr double largest_detail = 0.05;  // of the image
-constexpr std::size_t frames_looked_at = 24;
+constexpr double most_threshold_px = 256.0;  // no larger thing is a detail
+constexpr std::size_t frames_looked_at = 48;
 
 bool outside_a_plane(const Frustum& frustum, const std::array<glm::dvec3, 3>& corners) {
   return std::ranges::any_of(frustum.span(), [&](const Plane& plane) {
@@ -66,6 +67,12 @@ std::uint64_t rarest(const FrameKinds& found) {
   return least;
 }
 
+/// Does `a` show more than `b`: more kinds, else smaller details, else more of the rarest kind?
+bool tells_more(const FrameKinds& a, const FrameKinds& b) {
+  return std::tuple(kinds_in(a), -a.detail_px, rarest(a)) >
+         std::tuple(kinds_in(b), -b.detail_px, rarest(b));
+}
+
 std::array<std::string, culling_kind_count> notes_of(const FrameKinds& found) {
   std::array<std::string, culling_kind_count> notes;
   for (std::size_t i = 0; i < culling_kind_count; ++i) {
@@ -80,9 +87,7 @@ std::array<std::string, culling_kind_count> notes_of(const FrameKinds& found) {
 
 }  // namespace
 
-KindFinder::KindFinder(const Scene& scene, const Viewport& viewport, const Registry& cullers)
-    : scene_(&scene) {
-  const double most = largest_detail * viewport.width * viewport.height;
+KindFinder::KindFinder(const Scene& scene, const Registry& cullers) : scene_(&scene) {
   for (const auto& [name, entry] : cullers.entries()) {
     if (!stands_alone(entry.info)) continue;
     if (entry.info.guarantee == Guarantee::conservative && !scene.cells.empty()) {
@@ -94,7 +99,7 @@ KindFinder::KindFinder(const Scene& scene, const Viewport& viewport, const Regis
     const ParameterSpec* const threshold = pixel_threshold(entry.info);
     if (entry.info.guarantee != Guarantee::approximate || threshold == nullptr) continue;
     if (!detail_.empty()) continue;
-    for (double px = least_threshold_px; px <= most; px *= 4.0) {
+    for (double px = least_threshold_px; px <= most_threshold_px; px *= 4.0) {
       const std::string value = std::to_string(static_cast<int>(px));
       detail_.push_back({px, cullers.make(name + "[" + threshold->name + "=" + value + "]")});
       prepare(*detail_.back().culler, scene);
@@ -184,7 +189,7 @@ KindsPicture write_stored_kinds(const std::filesystem::path& results, const Regi
   std::optional<std::size_t> best_frame;
   FrameKinds best;
   SceneState state(stored.scene);
-  KindFinder finder(stored.scene, block.viewport, cullers);
+  KindFinder finder(stored.scene, cullers);
   const auto visit_all = [&](auto&& visit) {
     for_each_frame(stored.path, state, block.viewport, visit);
   };
@@ -194,8 +199,7 @@ KindsPicture write_stored_kinds(const std::filesystem::path& results, const Regi
     const std::optional<FrameTruth> truth = truths.load(cell->frames[index].truth);
     if (!truth) throw InputError("the truth of cell " + id + " is missing; run the matrix again");
     FrameKinds found = finder.find(frame, *truth);
-    if (!best_frame ||
-        std::pair(kinds_in(found), rarest(found)) > std::pair(kinds_in(best), rarest(best))) {
+    if (!best_frame || tells_more(found, best)) {
       best_frame = index;
       best = std::move(found);
     }

@@ -22,13 +22,12 @@ struct FrameKinds {
 /// Says of each triangle which kind leaves it out: the first of these that does. It lies outside a
 /// plane of the frustum; a walk through cells and portals does not reach it, of any conservative
 /// method that walks; it faces away, on a solid mesh; truth does not see it; or its object is no
-/// larger in the image than the least threshold, of 4, 16, 64 … pixels up to a twentieth of the
-/// image, at which anything visible is: by the first approximate method, by name, that has a
-/// threshold in pixels.
+/// larger in the image than the least threshold, of 4, 16, 64 and 256 pixels, at which anything
+/// visible is: by the first approximate method, by name, that has a threshold in pixels.
 class KindFinder {
  public:
   /// Builds the cullers that it asks. Scene and registry outlive it.
-  KindFinder(const Scene& scene, const Viewport& viewport, const Registry& cullers);
+  KindFinder(const Scene& scene, const Registry& cullers);
 
   /// To be called for every frame of a path, in their order.
   void update(const Frame& frame, const Changes& changes);
@@ -55,9 +54,9 @@ struct KindsPicture {
   double detail_px = 0.0;  // as FrameKinds has it
 };
 
-/// Of some frames of the block's path the one that shows most kinds, and of these the one in which
-/// the rarest leaves out most. Written to `file` (PNG). Throws InputError if scene or truth are no
-/// longer there.
+/// Of some frames of the block's path the one that shows most kinds, of these one with the least
+/// threshold of detail culling, and of these the one in which the rarest kind leaves out most.
+/// Written to `file` (PNG). Throws InputError if scene or truth are no longer there.
 KindsPicture write_stored_kinds(const std::filesystem::path& results, const Registry& cullers,
                                 StoredScenes& scenes, const BlockSummary& block,
                                 const std::filesystem::path& file);

@@ -118,7 +118,8 @@ std::string error_verdict(const Errors& a, const Errors& b, bool between_pixels)
 void add_columns(std::vector<TableValue>& row, const Errors& a, const Errors& b) {
   for (std::size_t i = 0; i < error_kinds.size(); ++i) {
     for (const auto& count : {a[i], b[i]}) {
-      row.push_back(count ? TableValue(*count) : TableValue());
+      row.emplace_back();
+      if (count) row.back() = *count;
     }
   }
 }

@@ -44,6 +44,23 @@ std::set<Place> planned_places(const Block& block) {
   return places;
 }
 
+MatrixShare share_of(const Matrix& matrix, const std::map<BlockName, StoredBlock>& stored,
+                     const Registry& cullers) {
+  MatrixShare share{matrix.name, 0, 0, {}};
+  for (const Block& block : matrix.blocks) {
+    const auto found = stored.find(name_of(block));
+    for (const Place& place : planned_places(block)) {
+      ++share.planned;
+      if (found != stored.end() && found->second.places.contains(place)) {
+        ++share.present;
+      } else {
+        ++share.missing[cullers.short_name(place.first)];
+      }
+    }
+  }
+  return share;
+}
+
 }  // namespace
 
 PlannedGaps find_planned_gaps(const std::vector<Matrix>& matrices,
@@ -60,16 +77,9 @@ PlannedGaps find_planned_gaps(const std::vector<Matrix>& matrices,
   PlannedGaps gaps;
   std::set<std::pair<BlockName, Place>> told;  // several matrices may plan the same
   for (const Matrix& matrix : matrices) {
-    std::size_t planned = 0;
-    std::size_t present = 0;
-    for (const Block& block : matrix.blocks) {
-      const auto found = stored.find(name_of(block));
-      for (const Place& place : planned_places(block)) {
-        ++planned;
-        if (found != stored.end() && found->second.places.contains(place)) ++present;
-      }
-    }
-    if (2 * present <= planned) continue;
+    const MatrixShare share = share_of(matrix, stored, cullers);
+    if (share.present > 0) gaps.matrices.push_back(share);
+    if (2 * share.present <= share.planned) continue;
     const std::string reason = "the matrix " + matrix.name +
                                " plans it, and no cell of it is in the results that was measured "
                                "with the sources as they are; 'vislab run " +

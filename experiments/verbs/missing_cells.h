@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/culler/registry.h"
+#include "experiments/analysis/matrix_share.h"
 #include "experiments/matrix/matrix.h"
 #include "experiments/results/cell.h"
 
@@ -22,11 +23,14 @@ struct PlannedGaps {
   /// By the id of any cell that is there: what its block lacks.
   std::map<std::string, std::vector<PlannedGap>> of_block_with;
   std::vector<PlannedGap> blocks;  // of which nothing is there
+  /// Of every matrix with a cell that is there, however few they are; in the matrices' order.
+  std::vector<MatrixShare> matrices;
 };
 
 /// Results do not say which matrices were run; one of which more than half of the cells are there
-/// counts as run, for it was, or was interrupted. `cells` are those that count. A cell belongs to a
-/// planned block if scene, path, size, frames, device and seed are the same.
+/// counts as run, for it was, or was interrupted; gaps are told of these only, shares of all.
+/// `cells` are those that count. A cell belongs to a planned block if scene, path, size, frames,
+/// device and seed are the same.
 PlannedGaps find_planned_gaps(const std::vector<Matrix>& matrices,
                               const std::vector<const ResultCell*>& cells, const Registry& cullers);
 

@@ -179,6 +179,7 @@ int report(const Lab& lab, const std::filesystem::path& results,
     input.missing_blocks.push_back({"a damaged cell", cell.what()});
   }
   for (const PlannedGap& gap : gaps.blocks) input.missing_blocks.push_back({gap.name, gap.reason});
+  input.matrices = gaps.matrices;
   input.frame_times = [&](const CellSummary& cell) { return stored_frame_times(results, cell); };
   write_report(input, lab.report, output);
   std::cerr << "wrote " << (output / "index.html").string() << " and "

@@ -22,7 +22,7 @@ class KindsOfFrames : public ::testing::TestWithParam<const char*> {
     const Path path = load_path(loaded_.default_path, loaded_.scene, viewport, 6, folders);
     SceneState state(loaded_.scene);
     RayCaster caster(loaded_.scene, TruthSettings{4, 1, 1});
-    KindFinder finder(loaded_.scene, viewport, registry_);
+    KindFinder finder(loaded_.scene, registry_);
     for_each_frame(path, state, viewport,
                    [&](std::size_t, const Frame& frame, const Changes& changes) {
                      finder.update(frame, changes);

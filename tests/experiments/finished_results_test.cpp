@@ -122,7 +122,7 @@ TEST_F(FinishedResults, ADiskThatIsTooFullForTheTruthIsOneMessage) {
       "rounds = 1\n[lists]\nculler = [\"frustum.flat\"]\n"
       "scene = [\"box_field_tiny\"]\nresolution = [\"64x64\", \"96x96\"]\nframes = [3]\n");
   const ProgramResult full =
-      run_vislab_on_full_disk({"run", two_scenes, "--results", results(), "--quiet"}, 40);
+      run_vislab_on_full_disk({"run", two_scenes, "--results", results(), "--quiet"}, 1000);
   EXPECT_EQ(full.exit_code, 2);
   EXPECT_EQ(std::ranges::count(full.err, '\n'), 1) << full.err;
   EXPECT_NE(full.err.find(".truth"), std::string::npos) << full.err;

@@ -103,5 +103,18 @@ TEST_F(MissingCells, OfAMatrixThatWasNotRunNothingIsMissing) {
   EXPECT_TRUE(gaps({}).blocks.empty());
 }
 
+TEST_F(MissingCells, HowMuchOfAMatrixIsThereIsSaidHoweverLittleItIs) {
+  std::vector<ResultCell> cells = everything();
+  const std::size_t planned = cells.size();
+  cells.resize(3);
+  const PlannedGaps found = gaps(cells);
+  ASSERT_EQ(found.matrices.size(), 1U);
+  EXPECT_EQ(found.matrices[0].name, "made_up");
+  EXPECT_EQ(found.matrices[0].planned, planned);
+  EXPECT_EQ(found.matrices[0].present, 3U);
+  EXPECT_EQ(found.matrices[0].missing.at("frustum.bvh[leaf_size=2]"), 2U);
+  EXPECT_TRUE(gaps({}).matrices.empty());
+}
+
 }  // namespace
 }  // namespace vislab

@@ -91,6 +91,7 @@ TEST(SweepChart, RingsTheBreakPointAndNamesTheDial) {
   EXPECT_NE(script.find("$break1"), std::string::npos);
   EXPECT_EQ(script.find("$break0"), std::string::npos);
   EXPECT_LT(script.find("set terminal"), script.find("set output"));
+  EXPECT_NE(script.find("unset key"), std::string::npos);  // gnuplot warns of one without room
 }
 
 TEST(GuideSection, GivesOneSentenceOfAdviceAndARowAScene) {
@@ -113,6 +114,26 @@ TEST(GuideSection, GivesOneSentenceOfAdviceAndARowAScene) {
   EXPECT_EQ(guides[0].lists.at("rows")[0].values.at("best_ms"), "2.00");
   EXPECT_EQ(guides[0].lists.at("rows")[0].values.at("runner_up"), "`frustum.a`");
   EXPECT_EQ(guides[0].lists.at("rows")[0].values.at("moving"), "–");
+}
+
+TEST(GuideSection, ASceneWithSeveralRunsHasOneRow) {
+  std::vector<BlockSummary> blocks;
+  for (const char* path : {"walk", "turn"}) {
+    BlockSummary block = fabricated_block("plain");
+    block.path = path;
+    for (const char* name : {"frustum.a", "frustum.b", "frustum.c"}) {
+      CellSummary cell = fabricated_cell(name, 0.3, 0, 1.0);
+      cell.culls = Culls::outside_frustum;
+      block.cells.push_back(cell);
+    }
+    blocks.push_back(block);
+  }
+  blocks[1].frames += 1;
+  const std::vector<Fields> guides = guide_fields(blocks);
+  ASSERT_EQ(guides.size(), 1U);
+  ASSERT_EQ(guides[0].lists.at("rows").size(), 1U);
+  EXPECT_EQ(guides[0].lists.at("rows")[0].values.at("scene"), "plain\\, turn");
+  EXPECT_EQ(guides[0].values.at("run_count"), "2");
 }
 
 TEST(CostsSection, HasARowForEachFigureOfEveryMachine) {

@@ -89,7 +89,7 @@ std::vector<std::string> outside_references(const std::string& html, const std::
   return found;
 }
 
-TEST_F(Report, BothFilesAreWrittenAndSayWhatTheInputSays) {
+TEST_F(Report, PageSheetsAndChartAreWrittenAndSayWhatTheInputSays) {
   write_report(fabricated_input(), templates, folder_ / "out");
   const std::string html = read(folder_ / "out" / "index.html");
   const std::string words = words_of(html);
@@ -103,7 +103,8 @@ TEST_F(Report, BothFilesAreWrittenAndSayWhatTheInputSays) {
   EXPECT_NE(words.find("1,234"), std::string::npos);  // the error floor
   EXPECT_LT(html.find("id=\"the-error-floor\""), html.find("id=\"the-scenes\""));
   EXPECT_TRUE(read(folder_ / "out" / "report.pdf").starts_with("%PDF-"));
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out"), {}), 2);
+  EXPECT_NE(read(folder_ / "out" / "main-chart.svg").find("<svg"), std::string::npos);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out"), {}), 3);
 }
 
 TEST_F(Report, SaysWhereNothingWasDrawnAndWhereBuildsDiffer) {

@@ -236,6 +236,25 @@ TEST_F(SourceSections, AClaimWithoutCellsIsAGapWhereMostWereRunAndElseOneOfANumb
   EXPECT_EQ(fields.lists["untold_claims"].size(), 2U);  // stand there whatever was run
 }
 
+TEST_F(SourceSections, RunsOfOneSceneShareARowThatCountsWhereTheAnswerIsTheSame) {
+  input_.blocks.push_back(input_.blocks[0]);
+  input_.blocks.back().path = "with another best";
+  for (CellSummary& cell : input_.blocks.back().cells) {
+    if (!cell.anchor) cell.canonical = registry_.canonical("frustum.octree");
+  }
+  input_.blocks.push_back(input_.blocks[0]);
+  input_.blocks.back().path = "the longest";
+  input_.blocks.back().frames += 1;
+  Fields fields;
+  add_chain_fields(input_, fields);
+  ASSERT_EQ(fields.lists["choices"].size(), 1U);
+  EXPECT_EQ(fields.lists["choices"][0].values.at("scene"),
+            "plain\\, the longest (1 of 2 other runs alike)");
+  EXPECT_EQ(fields.lists["has_other_choices"].size(), 1U);
+  ASSERT_EQ(fields.lists["family_choices"].size(), 1U);
+  EXPECT_EQ(fields.lists["family_choices"][0].values.at("scene"), "plain\\, the longest");
+}
+
 TEST_F(SourceSections, TheChainToUseIsNamedWithWhatItSaves) {
   Fields fields;
   add_chain_fields(input_, fields);
