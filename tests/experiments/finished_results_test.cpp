@@ -120,9 +120,9 @@ TEST_F(FinishedResults, ADiskThatIsTooFullForTheTruthIsOneMessage) {
   const std::string two_scenes = folder_.write(
       "two.toml",
       "rounds = 1\n[lists]\nculler = [\"frustum.flat\"]\n"
-      "scene = [\"box_field_tiny\"]\nresolution = [\"64x64\", \"96x96\"]\nframes = [3]\n");
+      "scene = [\"box_field_tiny\"]\nresolution = [\"320x320\", \"400x400\"]\nframes = [3]\n");
   const ProgramResult full =
-      run_vislab_on_full_disk({"run", two_scenes, "--results", results(), "--quiet"}, 1000);
+      run_vislab_on_full_disk({"run", two_scenes, "--results", results(), "--quiet"}, 400);
   EXPECT_EQ(full.exit_code, 2);
   EXPECT_EQ(std::ranges::count(full.err, '\n'), 1) << full.err;
   EXPECT_NE(full.err.find(".truth"), std::string::npos) << full.err;
