@@ -85,9 +85,10 @@ struct ReportInput {
 };
 
 /// Writes index.html, report.pdf, the chart of all families (main-chart.svg, if anything was drawn)
-/// and, if hidden things were counted, persistence.json into `folder` (made if missing). They appear only when whole.
-/// Runs pandoc, gnuplot and chromium; throws InputError that names the program that is missing or
-/// failed, or if there is nothing to report. `template_folder` is the repository's report/.
+/// and, if hidden things were counted, persistence.json into `folder` (made if missing). They
+/// appear only when whole. Runs pandoc, gnuplot and chromium; throws InputError that names the
+/// program that is missing or failed, or if there is nothing to report. `template_folder` is the
+/// repository's report/.
 void write_report(const ReportInput& input, const std::filesystem::path& template_folder,
                   const std::filesystem::path& folder);
 

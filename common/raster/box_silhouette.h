@@ -6,7 +6,8 @@
 //   pixel's ray meets one of the box's six planes is linear in the window. So a pixel can show the
 //   box only if the least of the planes of entry is nearer than the greatest of the planes of exit,
 //   and not nearer than that least value.
-// Guarantee: as project_box, for each pixel: the box is enlarged by snapping_margin_px at its farthest depth
+// Guarantee: as project_box, for each pixel: the box is enlarged by snapping_margin_px at its
+// farthest depth
 //   before its planes are made, and nearness by the device's margin. Hidden means that nothing in
 //   the box can be seen.
 // Limits: as project_box: for boxes that lie wholly behind the near plane. Slabs that are seen
