@@ -8,6 +8,7 @@
 
 #include "report/chart_axis.h"
 #include "report/chart_labels.h"
+#include "report/chart_legend.h"
 #include "report/chart_parts.h"
 #include "report/dial_curves.h"
 #include "report/format.h"
@@ -45,12 +46,12 @@ constexpr double letter_width = 5.4;              // of a label's text
 constexpr int obstacles_a_segment = 10;           // of a curve
 constexpr const char* other_colour = "#9DB4C8";
 constexpr int other_shape = 7;
+constexpr double named_size = 0.9, other_size = 0.5;  // of symbols
 
 struct Mark {
   const CellSummary* cell = nullptr;
   std::size_t number = 0;  // in charts and tables
-  std::string colour;
-  int shape = 0;
+  Look look;
   bool named = true;                // in the legend, with its interval
   bool on_curve = false;            // the curve has an entry in the legend for all its marks
   std::vector<std::string> labels;  // values of dials, in the panels beside the mark
@@ -81,12 +82,11 @@ std::vector<Mark> marks_of(const BlockSummary& block, const ChartChoice& takes) 
     Mark mark;
     mark.cell = &cell;
     mark.number = i + 1;
-    mark.colour = reference_colour;
-    mark.shape = none_shape;
+    mark.look = {reference_colour, none_shape};
     if (cell.anchor && cell.canonical == "none") {
-      mark.shape = cell.replicate == 0 ? none_shape : none_again_shape;
+      mark.look.shape = cell.replicate == 0 ? none_shape : none_again_shape;
     } else if (cell.anchor) {
-      mark.shape = oracle_shapes[oracles++ % oracle_shapes.size()];
+      mark.look.shape = oracle_shapes[oracles++ % oracle_shapes.size()];
     }
     marks.push_back(mark);
   }
@@ -131,7 +131,7 @@ class ChartWriter {
 
   void write() {
     for (std::size_t i = 0; i < panels_.size(); ++i) write_panel(i);
-    write_legend();
+    legend_.write(out_, chart_height_);
   }
 
  private:
@@ -185,10 +185,7 @@ class ChartWriter {
     std::size_t looks = 0;
     for (const Curve& curve : curves_) {
       const Look look = method_look(looks++);
-      for (const std::size_t i : curve.own) {
-        marks_[i].colour = look.colour;
-        marks_[i].shape = look.shape;
-      }
+      for (const std::size_t i : curve.own) marks_[i].look = look;
       for (const bool last : {false, true}) {
         const std::size_t i = last ? curve.marks.back() : curve.marks.front();
         const std::string& value = last ? curve.dial.values.back() : curve.dial.values.front();
@@ -197,36 +194,36 @@ class ChartWriter {
     }
     for (Mark& mark : marks_) {
       if (mark.cell->anchor || mark.on_curve) continue;
-      const Look look = mark.named ? method_look(looks++) : Look{other_colour, other_shape};
-      mark.colour = look.colour;
-      mark.shape = look.shape;
+      mark.look = mark.named ? method_look(looks++) : Look{other_colour, other_shape};
     }
   }
 
   void add_legend() {
     bool others = false;
+    std::vector<LegendEntry> entries;
     for (const Mark& mark : marks_) {
       others = others || !mark.named;
       if (!mark.named || mark.on_curve) continue;
-      legend_marks_.push_back(mark);
-      legend_texts_.push_back(cut(std::to_string(mark.number) + "  " + mark.cell->culler));
+      entries.push_back(symbol_entry(cut(std::to_string(mark.number) + "  " + mark.cell->culler),
+                                     mark.look, named_size));
     }
     for (const Curve& curve : curves_) {
       std::vector<std::size_t> numbers;
       for (const std::size_t i : curve.own) numbers.push_back(marks_[i].number);
-      legend_marks_.push_back(marks_[curve.own.front()]);
-      legend_texts_.push_back(
-          cut(number_list(numbers) + "  " + curve.dial.name + " over " + curve.dial.parameter));
+      entries.push_back(symbol_entry(
+          cut(number_list(numbers) + "  " + curve.dial.name + " over " + curve.dial.parameter),
+          marks_[curve.own.front()].look, named_size));
     }
     if (others) {
-      legend_marks_.push_back({nullptr, 0, other_colour, other_shape, false, false, {}});
-      legend_texts_.emplace_back("other methods: see the tables");
+      entries.push_back(symbol_entry("other methods: see the tables",
+                                     Look{other_colour, other_shape}, other_size));
     }
-    legend_texts_.emplace_back("Pareto hull of the methods");
+    entries.push_back(line_entry("Pareto hull of the methods", hull_style));
     if (none_x_ > 0.0) {
-      legend_texts_.emplace_back(timed_ ? "time of drawing everything" : "drawing everything");
+      entries.push_back(
+          line_entry(timed_ ? "time of drawing everything" : "drawing everything", none_style));
     }
-    legend_ = legend_for(legend_texts_);
+    legend_ = Legend(std::move(entries));
   }
 
   double pixel_x(std::size_t panel, double value) const {
@@ -277,7 +274,7 @@ class ChartWriter {
            << x_[i].high << '\n';
     }
     out_ << "END\n";
-    plot_points(marks_, "1:2:3:4 with xerrorbars");
+    plot_points();
   }
 
   void write_line(const ChartBox& line, const char* style) {
@@ -322,7 +319,7 @@ class ChartWriter {
   /// Joins the marks of each curve, and adds what labels should keep off.
   void write_curves(std::size_t index, std::vector<ChartBox>& lines) {
     for (const Curve& curve : curves_) {
-      const std::string& colour = marks_[curve.own.front()].colour;
+      const std::string& colour = marks_[curve.own.front()].look.colour;
       for (std::size_t i = 1; i < curve.marks.size(); ++i) {
         const glm::dvec2 from = place_of(index, curve.marks[i - 1]);
         const glm::dvec2 to = place_of(index, curve.marks[i]);
@@ -404,39 +401,18 @@ class ChartWriter {
          << " nohead lw 0.6 lc rgb '#777777' front\n";
   }
 
-  void write_legend() {
-    out_ << "unset label\nunset arrow\nunset object\nunset title\nunset xlabel\nunset "
-            "ylabel\nunset border\n"
-         << "unset tics\nunset grid\nunset logscale\nset xrange [0:" << chart_width
-         << "]\nset yrange [0:" << legend_.height() << "]\n";
-    set_margins(out_, 0.0, 0.0, chart_width, legend_.height(), chart_height_);
-    for (std::size_t i = 0; i < legend_texts_.size(); ++i) {
-      const double left = legend_.left(i);
-      const double middle = legend_.middle(i);
-      out_ << "set label " << quoted(legend_texts_[i]) << " at first " << left + legend_text_left
-           << ',' << middle << " left font ',10.5'\n";
-      if (i < legend_marks_.size()) continue;
-      out_ << "set arrow from first " << left << ',' << middle << " to first " << left + 18.0 << ','
-           << middle << " nohead " << (i == legend_marks_.size() ? hull_style : none_style) << '\n';
-    }
-    out_ << "$points << END\n";
-    for (std::size_t i = 0; i < legend_marks_.size(); ++i) {
-      out_ << legend_.left(i) + 9.0 << ' ' << legend_.middle(i) << '\n';
-    }
-    out_ << "END\n";
-    plot_points(legend_marks_, "1:2 with points");
-  }
-
   /// Plots the lines of $points, each with the look of its mark; those without a name as dots below
   /// the others.
-  void plot_points(const std::vector<Mark>& marks, const std::string& how) {
+  void plot_points() {
     const char* separator = "plot ";
     for (const bool named : {false, true}) {
-      for (std::size_t i = 0; i < marks.size(); ++i) {
-        if (marks[i].named != named) continue;
+      for (std::size_t i = 0; i < marks_.size(); ++i) {
+        const Look& look = marks_[i].look;
+        if (marks_[i].named != named) continue;
         out_ << separator << "$points every ::" << i << "::" << i << " using "
-             << (named ? how : "1:2 with points") << " notitle pt " << marks[i].shape << " ps "
-             << (named ? 0.9 : 0.5) << " lw 1.3 lc rgb '" << marks[i].colour << "'";
+             << (named ? "1:2:3:4 with xerrorbars" : "1:2 with points") << " notitle pt "
+             << look.shape << " ps " << (named ? named_size : other_size) << " lw 1.3 lc rgb '"
+             << look.colour << "'";
         separator = ", \\\n  ";
       }
     }
@@ -451,8 +427,6 @@ class ChartWriter {
   ChartAxis x_axis_;
   std::vector<Panel> panels_;
   std::vector<Curve> curves_;
-  std::vector<Mark> legend_marks_;
-  std::vector<std::string> legend_texts_;
   Legend legend_;
   double chart_height_ = 0.0, panel_bottom_ = 0.0, panel_height_ = 0.0;
 };
@@ -490,11 +464,9 @@ std::string chart_script(const BlockSummary& block, const std::filesystem::path&
   std::ostringstream script;
   script.precision(12);
   ChartWriter writer(block, takes, script);
-  script << "reset\nunset key\nset terminal svg size " << chart_width << ',' << writer.height()
-         << " noenhanced font 'Noto Sans,11' background '#FFFFFF'\nset output "
-         << quoted(file.string()) << "\nset multiplot\n";
+  start_chart(script, file, writer.height());
   writer.write();
-  script << "unset multiplot\nunset output\n";
+  end_chart(script);
   return script.str();
 }
 

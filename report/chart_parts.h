@@ -1,17 +1,16 @@
-// What the report's charts have in common: their width, the looks of methods, legends, and pieces
-// of gnuplot commands. Everything in units of the drawing (1 unit = 1/4 mm as shown), y upwards.
+// What the report's charts have in common: their width, the looks of methods, and pieces of gnuplot
+// commands. Everything in units of the drawing (1 unit = 1/4 mm as shown), y upwards.
 #pragma once
 
+#include <filesystem>
 #include <iosfwd>
 #include <string>
-#include <vector>
 
 #include "report/chart_axis.h"
 
 namespace vislab::chart {
 
 constexpr double chart_width = 680.0;
-constexpr double legend_text_left = 24.0;  // from the left of an entry's mark
 
 /// How a method is drawn: a colour, and the number of a gnuplot symbol.
 struct Look {
@@ -26,21 +25,12 @@ Look method_look(std::size_t method);
 /// As a text of gnuplot's.
 std::string quoted(const std::string& text);
 
-/// How the legend fits under a chart: entries run down the columns.
-struct Legend {
-  std::vector<double> column_left;
-  std::size_t rows = 0;
-
-  double height() const;
-  double left(std::size_t entry) const { return column_left[entry / rows]; }
-  double middle(std::size_t entry) const;
-};
-
-/// The fewest rows whose columns fit beside each other; `texts` in their order.
-Legend legend_for(const std::vector<std::string>& texts);
-
 /// `name` is x or y.
 void set_axis(std::ostream& out, char name, const ChartAxis& axis);
+
+/// Begins a chart of panels in a file, an SVG.
+void start_chart(std::ostream& out, const std::filesystem::path& file, double height);
+void end_chart(std::ostream& out);
 
 /// The panel that the next plot fills.
 void set_margins(std::ostream& out, double left, double bottom, double width, double height,

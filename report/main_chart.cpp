@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "experiments/analysis/chains.h"
+#include "report/chart_legend.h"
 #include "report/chart_parts.h"
 
 namespace vislab {
@@ -83,15 +84,16 @@ class MainChart {
   explicit MainChart(const std::vector<BlockSummary>& blocks) : series_(series_of(blocks)) {
     std::vector<double> ratios{1.0};
     std::array<std::vector<double>, 2> errors;
+    std::vector<LegendEntry> entries;
     for (const Series& series : series_) {
       for (const Point& point : series.points) {
         ratios.push_back(point.ratio);
         for (std::size_t i = 0; i < 2; ++i) errors[i].push_back(point.errors[i]);
       }
-      names_.push_back(series.name);
+      entries.push_back(symbol_entry(series.name, series.look, 0.9));
     }
-    names_.emplace_back("time of drawing everything");
-    legend_ = legend_for(names_);
+    entries.push_back(line_entry("time of drawing everything", none_style));
+    legend_ = Legend(std::move(entries));
     x_axis_ = positive_axis(ratios);
     y_axes_ = {logarithmic_axis(errors[0], 10.0, "0"), logarithmic_axis(errors[1], 1.0, "0")};
     bottom_ = legend_.height() + axis_height;
@@ -99,9 +101,7 @@ class MainChart {
   }
 
   void write(const std::filesystem::path& file, std::ostream& out) const {
-    out << "reset\nunset key\nset terminal svg size " << chart_width << ',' << height_
-        << " noenhanced font 'Noto Sans,11' background '#FFFFFF'\nset output "
-        << quoted(file.string()) << "\nset multiplot\n";
+    start_chart(out, file, height_);
     for (std::size_t i = 0; i < series_.size(); ++i) {
       out << "$series" << i << " << END\n";
       for (const Point& point : series_[i].points) {
@@ -111,8 +111,8 @@ class MainChart {
       out << "END\n";
     }
     for (std::size_t panel = 0; panel < 2; ++panel) write_panel(panel, out);
-    write_legend(out);
-    out << "unset multiplot\nunset output\n";
+    legend_.write(out, height_);
+    end_chart(out);
   }
 
  private:
@@ -145,33 +145,7 @@ class MainChart {
     out << '\n';
   }
 
-  void write_legend(std::ostream& out) const {
-    out << "unset label\nunset arrow\nunset object\nunset title\nunset xlabel\nunset border\n"
-        << "unset tics\nunset grid\nunset logscale\nset xrange [0:" << chart_width
-        << "]\nset yrange [0:" << legend_.height() << "]\n";
-    set_margins(out, 0.0, 0.0, chart_width, legend_.height(), height_);
-    for (std::size_t i = 0; i < names_.size(); ++i) {
-      out << "set label " << quoted(names_[i]) << " at first " << legend_.left(i) + legend_text_left
-          << ',' << legend_.middle(i) << " left font ',10.5'\n";
-    }
-    const std::size_t line = series_.size();
-    out << "set arrow from first " << legend_.left(line) << ',' << legend_.middle(line)
-        << " to first " << legend_.left(line) + 18.0 << ',' << legend_.middle(line) << " nohead "
-        << none_style << "\n$marks << END\n";
-    for (std::size_t i = 0; i < series_.size(); ++i) {
-      out << legend_.left(i) + 9.0 << ' ' << legend_.middle(i) << '\n';
-    }
-    out << "END\nplot";
-    for (std::size_t i = 0; i < series_.size(); ++i) {
-      out << (i == 0 ? " " : ", \\\n  ") << "$marks every ::" << i << "::" << i
-          << " using 1:2 with points notitle pt " << series_[i].look.shape
-          << " ps 0.9 lw 1.3 lc rgb '" << series_[i].look.colour << "'";
-    }
-    out << '\n';
-  }
-
   std::vector<Series> series_;
-  std::vector<std::string> names_;
   Legend legend_;
   ChartAxis x_axis_;
   std::array<ChartAxis, 2> y_axes_;

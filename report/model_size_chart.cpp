@@ -5,6 +5,7 @@
 #include <functional>
 #include <sstream>
 
+#include "report/chart_legend.h"
 #include "report/chart_parts.h"
 
 namespace vislab {
@@ -70,12 +71,14 @@ class SizeChart {
     add(rows_, "efficiency ÷ best",
         [](const SizePoint& point, std::size_t) { return point.relative; });
     add(rows_, "over-inclusion", [](const SizePoint& point, std::size_t) { return point.over; });
+    std::vector<LegendEntry> entries;
     for (const SizeCurve& scene : verdict.scenes) {
-      texts_.push_back(scene.scene + (scene.path.empty() ? "" : ", " + scene.path));
+      entries.push_back(symbol_entry(scene.scene + (scene.path.empty() ? "" : ", " + scene.path),
+                                     method_look(entries.size()), 0.8));
     }
-    texts_.emplace_back("ring: knee");
-    texts_.emplace_back("black: default");
-    legend_ = legend_for(texts_);
+    entries.push_back(symbol_entry("ring: knee", Look{"#000000", ring}, 1.5));
+    entries.push_back(symbol_entry("black: default", Look{"#000000", dot}, 0.5));
+    legend_ = Legend(std::move(entries));
     const auto columns = static_cast<double>(columns_.size());
     panel_width_ =
         (chart_width - panel_left - right_margin - (columns - 1.0) * panel_gap) / columns;
@@ -85,14 +88,12 @@ class SizeChart {
   void write(const std::filesystem::path& file) {
     const auto rows = static_cast<double>(rows_.size());
     height_ = legend_.height() + rows * (axis_height + panel_height + top_margin);
-    out_ << "set terminal svg size " << chart_width << ',' << height_
-         << " noenhanced font 'Noto Sans,11' background '#FFFFFF'\nset output "
-         << quoted(file.string()) << "\nset multiplot\n";
+    start_chart(out_, file, height_);
     for (std::size_t row = 0; row < rows_.size(); ++row) {
       for (std::size_t column = 0; column < columns_.size(); ++column) write_panel(row, column);
     }
-    write_legend();
-    out_ << "unset multiplot\nunset output\n";
+    legend_.write(out_, height_);
+    end_chart(out_);
   }
 
  private:
@@ -189,42 +190,10 @@ class SizeChart {
     out_ << '\n';
   }
 
-  void write_legend() {
-    out_ << "unset label\nunset arrow\nunset object\nunset xlabel\nunset border\nunset tics\n"
-         << "unset grid\nunset logscale\nset xrange [0:" << chart_width
-         << "]\nset yrange [0:" << legend_.height() << "]\n";
-    set_margins(out_, 0.0, 0.0, chart_width, legend_.height(), height_);
-    out_ << "$legend << END\n";
-    for (std::size_t i = 0; i < texts_.size(); ++i) {
-      out_ << legend_.left(i) + 9.0 << ' ' << legend_.middle(i) << '\n';
-    }
-    out_ << "END\n";
-    for (std::size_t i = 0; i < texts_.size(); ++i) {
-      out_ << "set label " << quoted(texts_[i]) << " at first "
-           << legend_.left(i) + legend_text_left << ',' << legend_.middle(i)
-           << " left font ',10.5'\n";
-    }
-    const std::size_t scenes = verdict_.scenes.size();
-    out_ << "plot";
-    for (std::size_t i = 0; i < texts_.size(); ++i) {
-      const Look look = i < scenes    ? method_look(i)
-                        : i == scenes ? Look{"#000000", ring}
-                                      : Look{"#000000", dot};
-      out_ << (i == 0 ? " " : ", \\\n  ") << "$legend every ::" << i << "::" << i
-           << " using 1:2 with points notitle pt " << look.shape << " ps "
-           << (i < scenes    ? 0.8
-               : i == scenes ? 1.5
-                             : 0.5)
-           << " lw 1.3 lc rgb '" << look.colour << "'";
-    }
-    out_ << '\n';
-  }
-
   const SizeSweep& sweep_;
   const SizeVerdict& verdict_;
   std::ostream& out_;
   std::vector<Measure> columns_, rows_;
-  std::vector<std::string> texts_;  // of the legend: scenes, ring, dot
   Legend legend_;
   double panel_width_ = 0.0, height_ = 0.0;
 };
@@ -240,7 +209,6 @@ std::string size_chart_script(const SizeSweep& sweep, const SizeVerdict& verdict
                               const std::filesystem::path& file) {
   std::ostringstream script;
   script.precision(12);
-  script << "reset\nunset key\n";
   SizeChart(sweep, verdict, script).write(file);
   return script.str();
 }

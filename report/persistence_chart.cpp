@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "algorithms/occlusion/persistence.h"
+#include "report/chart_legend.h"
 #include "report/chart_parts.h"
 #include "report/persistence_section.h"
 
@@ -36,10 +37,14 @@ class PersistenceChart {
       : rows_(rows), out_(out) {
     for (const PersistenceRow& row : rows_) {
       add_new(scenes_, row.scene);
-      add_new(texts_, label_of(row));
+      add_new(paths_, label_of(row));
     }
-    texts_.emplace_back("0.99 − 0.7 exp(−t)");
-    legend_ = legend_for(texts_);
+    std::vector<LegendEntry> entries;
+    for (const std::string& path : paths_) {
+      entries.push_back(symbol_entry(path, method_look(entries.size()), 0.8));
+    }
+    entries.push_back(line_entry("0.99 − 0.7 exp(−t)", formula_style));
+    legend_ = Legend(std::move(entries));
   }
 
   void write(const std::filesystem::path& file) {
@@ -49,9 +54,7 @@ class PersistenceChart {
     height_ = bottom + static_cast<double>(lines - 1) * panel_pitch + panel_height + top_margin;
     const double gaps = static_cast<double>(columns - 1) * column_gap;
     const double width = (chart_width - left_margin - right_margin - gaps) / columns;
-    out_ << "set terminal svg size " << chart_width << ',' << height_
-         << " noenhanced font 'Noto Sans,11' background '#FFFFFF'\nset output "
-         << quoted(file.string()) << "\nunset key\nset multiplot\n";
+    start_chart(out_, file, height_);
     write_points();
     for (std::size_t s = 0; s < scenes_.size(); ++s) {
       const std::size_t column = s % columns;
@@ -61,8 +64,8 @@ class PersistenceChart {
                   bottom + static_cast<double>(lines - 1 - line) * panel_pitch, width, column == 0,
                   s + columns >= scenes_.size());
     }
-    write_legend();
-    out_ << "unset multiplot\nunset output\n";
+    legend_.write(out_, height_);
+    end_chart(out_);
   }
 
  private:
@@ -77,7 +80,7 @@ class PersistenceChart {
   }
 
   std::size_t look_of(const PersistenceRow& row) const {
-    return static_cast<std::size_t>(std::ranges::find(texts_, label_of(row)) - texts_.begin());
+    return static_cast<std::size_t>(std::ranges::find(paths_, label_of(row)) - paths_.begin());
   }
 
   void write_points() {
@@ -88,7 +91,7 @@ class PersistenceChart {
     out_ << "END\n";
     for (std::size_t r = 0; r < rows_.size(); ++r) {
       const double step = sidestep * (static_cast<double>(look_of(rows_[r])) -
-                                      0.5 * static_cast<double>(texts_.size() - 2));
+                                      0.5 * static_cast<double>(paths_.size() - 1));
       out_ << "$row" << r << " << END\n";
       for (const auto& [first, last] : bands) {
         const StillHidden still = pooled(rows_[r].counts.after, first, last);
@@ -157,37 +160,10 @@ class PersistenceChart {
     out_ << '\n';
   }
 
-  void write_legend() {
-    out_ << "unset label\nunset title\nunset xlabel\nunset border\nunset tics\nunset grid\n"
-         << "set xrange [0:" << chart_width << "]\nset yrange [0:" << legend_.height() << "]\n";
-    set_margins(out_, 0.0, 0.0, chart_width, legend_.height(), height_);
-    out_ << "$legend << END\n";
-    for (std::size_t i = 0; i < texts_.size(); ++i) {
-      out_ << legend_.left(i) + 9.0 << ' ' << legend_.middle(i) << '\n';
-    }
-    out_ << "END\n";
-    for (std::size_t i = 0; i < texts_.size(); ++i) {
-      out_ << "set label " << quoted(texts_[i]) << " at first "
-           << legend_.left(i) + legend_text_left << ',' << legend_.middle(i)
-           << " left font ',10.5'\n";
-    }
-    const std::size_t formula = texts_.size() - 1;
-    out_ << "set arrow from first " << legend_.left(formula) << ',' << legend_.middle(formula)
-         << " to first " << legend_.left(formula) + 18.0 << ',' << legend_.middle(formula)
-         << " nohead " << formula_style << "\nplot";
-    for (std::size_t i = 0; i < formula; ++i) {
-      const Look look = method_look(i);
-      out_ << (i == 0 ? " " : ", \\\n  ") << "$legend every ::" << i << "::" << i
-           << " using 1:2 with points notitle pt " << look.shape << " ps 0.8 lw 1.3 lc rgb '"
-           << look.colour << "'";
-    }
-    out_ << '\n';
-  }
-
   const std::vector<PersistenceRow>& rows_;
   std::ostream& out_;
   std::vector<std::string> scenes_;
-  std::vector<std::string> texts_;  // of the legend: paths, formula
+  std::vector<std::string> paths_;
   Legend legend_;
   double height_ = 0.0;
 };

@@ -7,6 +7,7 @@
 
 #include "common/scene/error.h"
 #include "experiments/devices/device_spec.h"
+#include "report/chart_legend.h"
 #include "report/chart_parts.h"
 #include "report/format.h"
 
@@ -205,22 +206,24 @@ std::string times(double ratio) {
 class PhaseWriter {
  public:
   PhaseWriter(const PhaseDiagram& diagram, std::ostream& out) : diagram_(diagram), out_(out) {
+    std::vector<LegendEntry> entries;
     for (std::size_t i = 0; i < diagram.winners.size(); ++i) {
-      texts_.push_back(phase_letter(i) + "  " + diagram.winners[i]);
+      LegendEntry entry;
+      entry.text = phase_letter(i) + "  " + diagram.winners[i];
+      entry.field = light_colour(method_look(i).colour);
+      entries.push_back(std::move(entry));
     }
-    legend_ = legend_for(texts_);
+    legend_ = Legend(std::move(entries));
     bottom_ = legend_.height() + axis_height;
     panel_height_ = row_height * static_cast<double>(diagram.rows.size());
     height_ = bottom_ + panel_height_ + top_margin;
   }
 
   void write(const std::filesystem::path& file) {
-    out_ << "set terminal svg size " << chart_width << ',' << height_
-         << " noenhanced font 'Noto Sans,11' background '#FFFFFF'\nset output "
-         << quoted(file.string()) << "\nset multiplot\n";
+    start_chart(out_, file, height_);
     write_panel();
-    write_legend();
-    out_ << "unset multiplot\nunset output\n";
+    legend_.write(out_, height_);
+    end_chart(out_);
   }
 
  private:
@@ -281,23 +284,8 @@ class PhaseWriter {
          times(cell->lead) + (cell->over_frustum ? " | " + times(*cell->over_frustum) : ""), ",10");
   }
 
-  void write_legend() {
-    out_ << "unset label\nunset object\nunset xlabel\nunset border\nunset tics\nset xrange [0:"
-         << chart_width << "]\nset yrange [0:" << legend_.height() << "]\n";
-    set_margins(out_, 0.0, 0.0, chart_width, legend_.height(), height_);
-    for (std::size_t i = 0; i < texts_.size(); ++i) {
-      rectangle(legend_.left(i), legend_.middle(i) - 5.0, legend_.left(i) + 18.0,
-                legend_.middle(i) + 5.0, light_colour(method_look(i).colour));
-      out_ << "set label " << quoted(texts_[i]) << " at first "
-           << legend_.left(i) + legend_text_left << ',' << legend_.middle(i)
-           << " left font ',10.5'\n";
-    }
-    out_ << "plot NaN notitle\n";
-  }
-
   const PhaseDiagram& diagram_;
   std::ostream& out_;
-  std::vector<std::string> texts_;
   Legend legend_;
   double bottom_ = 0.0, panel_height_ = 0.0, height_ = 0.0;
 };
@@ -364,7 +352,6 @@ std::vector<PhaseDiagram> phase_diagrams(
 std::string phase_script(const PhaseDiagram& diagram, const std::filesystem::path& file) {
   std::ostringstream script;
   script.precision(12);
-  script << "reset\nunset key\n";
   PhaseWriter(diagram, script).write(file);
   return script.str();
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "report/chart_legend.h"
 #include "report/chart_parts.h"
 
 namespace vislab {
@@ -26,34 +27,33 @@ class SweepChart {
  public:
   SweepChart(const SweepResult& result, std::ostream& out) : result_(result), out_(out) {
     std::vector<double> figures;
+    std::vector<LegendEntry> entries;
     for (const SweepVerdict& verdict : result.verdicts) {
-      texts_.push_back(verdict.culler);
+      entries.push_back(symbol_entry(verdict.culler, method_look(entries.size()), 0.8));
       for (const SweepPoint& point : verdict.points) {
         if (!std::isnan(point.figure)) figures.push_back(point.figure);
       }
     }
-    texts_.emplace_back("ring: break point");
+    entries.push_back(symbol_entry("ring: break point", Look{"#000000", ring}, 1.5));
     common_limit_ = common_limit();
     if (common_limit_ > 0.0) {
       figures.push_back(common_limit_);
-      texts_.emplace_back("limit");
+      entries.push_back(line_entry("limit", limit_style));
     }
     const double most = figures.empty() ? 0.0 : std::ranges::max(figures);
     const bool has_zero = std::ranges::count(figures, 0.0) > 0;
     axis_ = has_zero && most > 0.0 ? logarithmic_axis(figures, most, "0")
                                    : positive_axis(most > 0.0 ? figures : std::vector{1.0});
-    legend_ = legend_for(texts_);
+    legend_ = Legend(std::move(entries));
   }
 
   void write(const std::filesystem::path& file) {
     const double bottom = legend_.height() + axis_height;
     height_ = bottom + panel_height + top_margin;
-    out_ << "set terminal svg size " << chart_width << ',' << height_
-         << " noenhanced font 'Noto Sans,11' background '#FFFFFF'\nset output "
-         << quoted(file.string()) << "\nset multiplot\n";
+    start_chart(out_, file, height_);
     write_panel(bottom);
-    write_legend();
-    out_ << "unset multiplot\nunset output\n";
+    legend_.write(out_, height_);
+    end_chart(out_);
   }
 
  private:
@@ -160,40 +160,8 @@ class SweepChart {
     out_ << '\n';
   }
 
-  void write_legend() {
-    out_ << "unset label\nunset arrow\nunset object\nunset xlabel\nunset border\nunset tics\n"
-         << "unset grid\nunset logscale\nset xrange [0:" << chart_width
-         << "]\nset yrange [0:" << legend_.height() << "]\n";
-    set_margins(out_, 0.0, 0.0, chart_width, legend_.height(), height_);
-    out_ << "$legend << END\n";
-    for (std::size_t i = 0; i < texts_.size(); ++i) {
-      out_ << legend_.left(i) + 9.0 << ' ' << legend_.middle(i) << '\n';
-    }
-    out_ << "END\n";
-    for (std::size_t i = 0; i < texts_.size(); ++i) {
-      out_ << "set label " << quoted(texts_[i]) << " at first "
-           << legend_.left(i) + legend_text_left << ',' << legend_.middle(i)
-           << " left font ',10.5'\n";
-    }
-    const std::size_t methods = result_.verdicts.size();
-    if (texts_.size() > methods + 1) {
-      out_ << "set arrow from first " << legend_.left(methods + 1) << ','
-           << legend_.middle(methods + 1) << " to first " << legend_.left(methods + 1) + 18.0 << ','
-           << legend_.middle(methods + 1) << " nohead " << limit_style << '\n';
-    }
-    out_ << "plot";
-    for (std::size_t i = 0; i <= methods; ++i) {
-      const Look look = i < methods ? method_look(i) : Look{"#000000", ring};
-      out_ << (i == 0 ? " " : ", \\\n  ") << "$legend every ::" << i << "::" << i
-           << " using 1:2 with points notitle pt " << look.shape << " ps "
-           << (i < methods ? 0.8 : 1.5) << " lw 1.3 lc rgb '" << look.colour << "'";
-    }
-    out_ << '\n';
-  }
-
   const SweepResult& result_;
   std::ostream& out_;
-  std::vector<std::string> texts_;  // of the legend: methods, ring, limit
   double common_limit_ = 0.0;
   ChartAxis axis_;
   Legend legend_;
@@ -210,7 +178,6 @@ bool has_sweep_chart(const SweepResult& result) {
 std::string sweep_chart_script(const SweepResult& result, const std::filesystem::path& file) {
   std::ostringstream script;
   script.precision(12);
-  script << "reset\nunset key\n";
   SweepChart(result, script).write(file);
   return script.str();
 }
