@@ -16,6 +16,7 @@
 #include <cstring>
 
 #include "common/judge/clear_hits.h"
+#include "common/judge/pass_filter.h"
 #include "common/judge/ray_scene.h"
 #include "common/judge/samples.h"
 #include "common/judge/truth.h"
@@ -159,24 +160,10 @@ void count(Packet& packet, const EightPositions& positions, const RayScene& scen
   }
 }
 
-/// Lets rays pass through triangles that are not kept.
-struct KeptContext {
-  RTCIntersectContext embree;
-  const RayScene* scene;
+struct NotKept {
   const std::vector<std::uint8_t>* kept;  // by triangle
+  bool operator()(TriangleId triangle) const { return (*kept)[triangle] == 0; }
 };
-
-void pass_if_not_kept(const RTCFilterFunctionNArguments* arguments) {
-  const auto* context = reinterpret_cast<const KeptContext*>(arguments->context);
-  RTCHitN* hit = arguments->hit;
-  for (unsigned i = 0; i < arguments->N; ++i) {
-    if (arguments->valid[i] == 0) continue;
-    const TriangleId triangle = context->scene->triangle_of(
-        RTCHitN_geomID(hit, arguments->N, i), RTCHitN_primID(hit, arguments->N, i),
-        RTCHitN_instID(hit, arguments->N, i, 0));
-    if ((*context->kept)[triangle] == 0) arguments->valid[i] = 0;
-  }
-}
 
 RTCIntersectContext coherent_context() {
   RTCIntersectContext context;
@@ -325,8 +312,8 @@ std::vector<RayCaster::Hit> RayCaster::cast(const Frame& frame,
   }
   std::vector<Hit> hits(window_px.size());
   self.for_each((window_px.size() + 7) / 8, [&](std::size_t i, Worker&) {
-    KeptContext context{coherent_context(), &self.rays, &is_kept};
-    if (kept != nullptr) context.embree.filter = pass_if_not_kept;
+    PassContext<NotKept> context{coherent_context(), &self.rays, {&is_kept}};
+    if (kept != nullptr) context.embree.filter = pass_filter<NotKept>;
     Packet packet(maker);
     EightPositions positions;
     for (std::size_t lane = 0; lane < 8; ++lane) {

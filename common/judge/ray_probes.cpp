@@ -13,8 +13,8 @@
 #include <algorithm>
 #include <map>
 
+#include "common/judge/pass_filter.h"
 #include "common/judge/path_truth.h"
-#include "common/judge/ray_scene.h"
 #include "common/judge/samples.h"
 #include "common/scene/error.h"
 
@@ -24,24 +24,13 @@ namespace {
 /// Depths along a ray that differ by less than this, relative to the smaller, are one.
 constexpr float same_depth = 1e-6F;
 
-/// Lets a ray pass through the triangles that it has met already.
-struct PassContext {
-  RTCIntersectContext embree;
-  const RayScene* scene;
-  const std::vector<TriangleId>* met;
-};
-
-void pass_if_met(const RTCFilterFunctionNArguments* arguments) {
-  const auto* context = reinterpret_cast<const PassContext*>(arguments->context);
-  RTCHitN* hit = arguments->hit;
-  for (unsigned i = 0; i < arguments->N; ++i) {
-    if (arguments->valid[i] == 0) continue;
-    const TriangleId triangle = context->scene->triangle_of(
-        RTCHitN_geomID(hit, arguments->N, i), RTCHitN_primID(hit, arguments->N, i),
-        RTCHitN_instID(hit, arguments->N, i, 0));
-    if (std::ranges::find(*context->met, triangle) != context->met->end()) arguments->valid[i] = 0;
+/// The triangles that a ray has met already.
+struct Met {
+  const std::vector<TriangleId>* triangles;
+  bool operator()(TriangleId triangle) const {
+    return std::ranges::find(*triangles, triangle) != triangles->end();
   }
-}
+};
 
 /// Window positions, eight at a time. Those beyond the window's border are to be left out.
 std::vector<EightPositions> positions_of(const RaySampling& sampling, const Viewport& viewport) {
@@ -155,9 +144,9 @@ class SceneProbe : public RayProbe {
       ray.ray.mask = 0xFFFFFFFFU;
       ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
       ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-      PassContext context{{}, &rays_, &met_};
+      PassContext<Met> context{{}, &rays_, {&met_}};
       rtcInitIntersectContext(&context.embree);
-      if (!met_.empty()) context.embree.filter = pass_if_met;
+      if (!met_.empty()) context.embree.filter = pass_filter<Met>;
       rtcIntersect1(rays_.handle(), &context.embree, &ray);
       if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) break;
       const TriangleId triangle =
