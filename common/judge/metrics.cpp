@@ -22,16 +22,22 @@ struct LostSample {
   bool disputed = false;
 };
 
-/// Says of each lost sample whether it is disputed.
+/// Says of each lost sample whether it is disputed. `owners` are empty but for samples of C.
 void classify(const Frame& frame, const VisibleSet& kept, RayCaster& caster,
-              std::vector<LostSample>& samples) {
+              std::span<const TriangleId> owners, std::vector<LostSample>& samples) {
   std::vector<glm::dvec2> positions;
   positions.reserve(samples.size());
   for (const LostSample& sample : samples) positions.push_back(sample.window_px);
   const std::vector<RayCaster::Hit> hits = caster.cast(frame, positions, &kept);
   Disputes disputes(frame, caster.scene());
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    samples[i].disputed = disputes(samples[i].window_px, samples[i].triangle, hits[i].triangle);
+    LostSample& sample = samples[i];
+    sample.disputed = disputes(sample.window_px, sample.triangle, hits[i].triangle);
+    if (sample.disputed || owners.empty()) continue;
+    const auto column = static_cast<std::size_t>(sample.window_px.x);
+    const auto row = static_cast<std::size_t>(sample.window_px.y);
+    const TriangleId owner = owners[row * static_cast<std::size_t>(frame.viewport.width) + column];
+    sample.disputed = disputes(sample.window_px, sample.triangle, owner);
   }
 }
 
@@ -147,7 +153,7 @@ void find_worst(const Scene& scene, const std::vector<LostSample>& lost, Granula
 }  // namespace
 
 Verdict judge_set(const Frame& frame, const FrameTruth& truth, const VisibleSet& kept,
-                  Granularity granularity, RayCaster& caster) {
+                  Granularity granularity, RayCaster& caster, std::span<const TriangleId> owners) {
   const Scene& scene = caster.scene();
   Verdict verdict;
   verdict.pixels = truth.ids.size();
@@ -167,8 +173,8 @@ Verdict judge_set(const Frame& frame, const FrameTruth& truth, const VisibleSet&
   for (const RayCaster::Sample& sample : caster.jittered_hits(frame, left_out)) {
     jittered.push_back({sample.window_px, sample.triangle});
   }
-  classify(frame, kept, caster, centres);
-  classify(frame, kept, caster, jittered);
+  classify(frame, kept, caster, owners, centres);
+  classify(frame, kept, caster, {}, jittered);
 
   std::vector<TriangleId> false_triangles;
   for (const LostSample& sample : centres) {

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <tuple>
 
 #include "common/judge/image_judge.h"
 #include "experiments/context/sources.h"
@@ -66,7 +67,7 @@ void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene
     const ObjectVisibility visibility = object_visibility(scene, seen);
     const CullableTriangles cullable(frame, scene);
     std::map<std::string, VisibleSet> sets;
-    std::map<std::pair<std::string, Granularity>, Verdict> verdicts;
+    std::map<std::tuple<std::string, std::string, Granularity>, Verdict> verdicts;
     std::map<std::string, ImageVerdict> images;  // by the sets that were drawn, and one-sided
     std::map<std::string, SurfaceVerdict> surfaces;
     for (Pending& entry : pending) {
@@ -74,9 +75,12 @@ void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene
       const Granularity granularity = entry.cell->granularity;
       if (!sets.contains(hash)) sets.emplace(hash, store.load_set(hash));
       const VisibleSet& set = sets.at(hash);
-      const std::pair key(hash, granularity);
+      const std::string& surface = entry.cell->frames[index].surface;
+      const std::vector<TriangleId> owners =
+          surface.empty() ? std::vector<TriangleId>() : store.load_surface(surface);
+      const std::tuple key(hash, surface, granularity);
       if (!verdicts.contains(key)) {
-        verdicts.emplace(key, judge_set(frame, seen, set, granularity, caster));
+        verdicts.emplace(key, judge_set(frame, seen, set, granularity, caster, owners));
       }
       entry.verdicts.frames.push_back(verdicts.at(key));
       add(entry.verdicts.back_facing, cullable.back_facing(set));
@@ -90,10 +94,9 @@ void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene
         }
         entry.verdicts.images.push_back(images.at(drawn_as));
       }
-      const std::string& surface = entry.cell->frames[index].surface;
       if (!surface.empty()) {
         if (!surfaces.contains(surface)) {
-          surfaces.emplace(surface, judge_surface(frame, scene, seen, store.load_surface(surface)));
+          surfaces.emplace(surface, judge_surface(frame, scene, seen, owners));
         }
         entry.verdicts.surfaces.push_back(surfaces.at(surface));
       }

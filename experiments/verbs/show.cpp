@@ -55,7 +55,8 @@ int show(const Lab& lab, const ShowCall& call) {
   frame.viewport = viewport;
   frame.objects = state.view();
   const Granularity granularity = culler->info().granularity;
-  const Verdict verdict = judge_set(frame, truth.frame(last), run.sets[last], granularity, caster);
+  const Verdict verdict =
+      judge_set(frame, truth.frame(last), run.sets[last], granularity, caster, run.surfaces[last]);
   const std::string title = scene.name + ", " + lab.cullers.short_name(call.cullers.front()) +
                             ", frame " + std::to_string(last);
   if (call.plan) {

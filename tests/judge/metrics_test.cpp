@@ -160,6 +160,27 @@ TEST(JudgeSet, excuses_a_triangle_at_the_same_place_as_one_that_is_kept) {
   }
 }
 
+TEST(JudgeSet, excuses_a_pixel_that_a_painted_image_gives_to_an_edge_beside_it) {
+  constexpr std::size_t width = 96;
+  constexpr std::size_t height = 80;
+  // An upright edge 1/256 pixel to the right of the centres of column 60, 4 m away.
+  const double ndc = 2.0 * (60.5 + 1.0 / 256.0) / width - 1.0;
+  const auto x = static_cast<float>(4.0 * std::tan(std::numbers::pi / 6.0) * ndc);
+  Scene scene;
+  add_triangle(scene, {-20.0F, -20.0F, -5.0F}, {20.0F, -20.0F, -5.0F}, {0.0F, 30.0F, -5.0F});
+  add_triangle(scene, {x, -20.0F, 0.0F}, {x + 20.0F, 0.0F, 0.0F}, {x, 20.0F, 0.0F});
+  Judged judged(std::move(scene), camera_at({0.0, 0.0, 4.0}, {0.0, 0.0, 0.0}), {width, height});
+  const VisibleSet kept = all_but(judged.stage, {0});
+  const auto verdict = [&](TriangleId owner) {
+    const std::vector<TriangleId> owners(width * height, owner);
+    return judge_set(judged.stage.frame, judged.truth, kept, Granularity::triangle, judged.caster,
+                     owners);
+  };
+  EXPECT_EQ(judged.judge(kept).false_px, 61U * height);
+  EXPECT_EQ(verdict(1).false_px, 60U * height) << "only those beside the edge";
+  EXPECT_EQ(verdict(none_id).false_px, 61U * height);
+}
+
 TEST(JudgeSet, counts_an_object_false_only_if_it_loses_all_its_undisputed_samples) {
   Judged judged(cubes_at({{0.0, 0.0, 0.0}}), camera_at({2.0, 3.0, 5.0}, {0.0, 0.0, 0.0}));
   const std::vector<TriangleId> visible = judged.truth.visible();
