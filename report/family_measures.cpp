@@ -13,6 +13,10 @@ Estimate quotient(const Estimate& a, const Estimate& b) {
   return {a.value / b.value, a.low / b.high, a.high / b.low};
 }
 
+bool is_chain(const CellSummary& cell) {
+  return cell.canonical.find(between_stages) != std::string::npos;
+}
+
 FamilyMethod method_of(const BlockSummary& block, const CellSummary& cell) {
   FamilyMethod method;
   method.cell = &cell;
@@ -38,8 +42,7 @@ bool was_outside_of_all_cells(const FamilyMethod& method) {
   if (method.before != nullptr) {
     return frames_outside(*method.cell) - frames_outside(*method.before) >= 1.0;
   }
-  return method.cell->canonical.find(between_stages) == std::string::npos &&
-         frames_outside(*method.cell) >= 1.0;
+  return frames_outside(*method.cell) >= 1.0;
 }
 
 double worth(const BlockSummary& block, const FamilyMethod& method) {
@@ -78,6 +81,7 @@ FamilyOn family_on(const BlockSummary& block, const std::string& family, const R
     if (cell.anchor || !cell.judged || cell.status != ResultCell::Status::done) continue;
     if (family_of(cell, cullers) != family) continue;
     const FamilyMethod method = method_of(block, cell);
+    if (is_chain(cell) && method.before == nullptr) continue;
     if (!was_outside_of_all_cells(method)) found.methods.push_back(method);
   }
   for (const FamilyMethod& method : found.methods) {

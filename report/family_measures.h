@@ -23,7 +23,7 @@ const CellSummary* without_last_stage(const BlockSummary& block, const CellSumma
 /// Pointers lead into the block.
 struct FamilyMethod {
   const CellSummary* cell = nullptr;
-  const CellSummary* before = nullptr;  // what it is held to; null: none
+  const CellSummary* before = nullptr;  // what a chain is held to; null: none, of a single method
   /// frame_ms ÷ that of `before` (or of none); NaN where nothing is drawn. Both are paired with
   /// none; of a chain the interval is the widest that theirs allow.
   Estimate ratio;
@@ -35,8 +35,9 @@ struct FamilyMethod {
 };
 
 struct FamilyOn {
-  /// Finished and judged, no anchors; nor methods that go from cell to cell whose viewer never was
-  /// in any, for they had nothing to work on.
+  /// Finished and judged, no anchors; nor chains whose beginning was not measured, for what their
+  /// last stage adds is not known; nor methods that go from cell to cell whose viewer never was in
+  /// any, for they had nothing to work on.
   std::vector<FamilyMethod> methods;
   /// Without errors and not wrong on purpose: its last stage takes the least share of the time, or
   /// where nothing is drawn, leaves the least share of the triangles. Null: there is none.

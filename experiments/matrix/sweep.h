@@ -4,9 +4,8 @@
 //   description = "…"
 //   failure = "F1"                 row of the failure atlas
 //   extends = "box_edge"           optional: a sweep of the lab whose keys stand where this file
-//   has
-//                                  none, but for limit and expect: the same held to another limit,
-//                                  which measures nothing anew
+//                                  has none, but for limit and expect: the same held to another
+//                                  limit, which measures nothing anew
 //   cullers = ["frustum.flat", "frustum.octree[depth=${dial}]"]
 //   optional_cullers = ["peer.bullet"]   left out, and said so, where this build does not have them
 //   resolution = "128x128"         "${dial}x128" as well

@@ -159,7 +159,7 @@ std::string surface_hash(std::span<const TriangleId> owners) {
 
 ResultStore ResultStore::create(fs::path folder) {
   std::error_code code;
-  for (const char* part : {"cells", "sets", "images", "truth", "verdicts"}) {
+  for (const char* part : {"cells", "sets", "images", "truth", "verdicts", "matrices"}) {
     fs::create_directories(folder / part, code);
     if (code || ::access((folder / part).c_str(), W_OK | X_OK) != 0) {
       throw InputError("results folder " + folder.string() + " cannot be written to" +
@@ -184,6 +184,7 @@ void ResultStore::remove_unfinished() const {
   for (const char* part : {"cells", "sets", "images", "truth", "verdicts"}) {
     remove_temporary(folder_ / part, R"([0-9a-f]{32}(\.[a-z]+)?)");
   }
+  remove_temporary(folder_ / "matrices", "[^.]+");
   std::error_code code;  // no such folder: no sweep was run
   for (fs::directory_iterator sweep(folder_ / "stress", code), end; sweep != end && !code;
        sweep.increment(code)) {
@@ -372,6 +373,20 @@ void ResultStore::save_verdicts(const std::string& id, const CellVerdicts& verdi
                   {"floor_disputed_px", verdicts.floor_disputed_px},
                   {"floor_undisputed_px", verdicts.floor_undisputed_px}};
   write_file(folder_ / "verdicts" / (id + ".json"), j.dump() + "\n");
+}
+
+void ResultStore::note_matrix(const std::string& name) const {
+  write_file(folder_ / "matrices" / name, "run\n");
+}
+
+std::set<std::string> ResultStore::noted_matrices() const {
+  std::set<std::string> names;
+  std::error_code code;  // an older version noted none
+  for (fs::directory_iterator entry(folder_ / "matrices", code), end; entry != end && !code;
+       entry.increment(code)) {
+    names.insert(entry->path().filename().string());
+  }
+  return names;
 }
 
 }  // namespace vislab

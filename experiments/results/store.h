@@ -5,6 +5,7 @@
 //   truth/KEY.truth    what rays saw, compressed
 //   verdicts/ID.json   what the judge made of a cell's sets; derived, may be deleted
 //   other_formats/N/   cells of format N that were measured again since
+//   matrices/NAME      says that the matrix was run, whole or in part
 //   stress/NAME/       what stress sweeps were asked, and which cells are theirs
 // Files are written to a temporary name and renamed (write_file).
 #pragma once
@@ -12,6 +13,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -93,6 +95,10 @@ class ResultStore {
   /// answers by now.
   std::optional<CellVerdicts> load_verdicts(const ResultCell& cell, const std::string& judge) const;
   void save_verdicts(const std::string& id, const CellVerdicts& verdicts) const;
+
+  /// That a matrix of that name is run in this folder; what it plans and is not there is a gap.
+  void note_matrix(const std::string& name) const;
+  std::set<std::string> noted_matrices() const;
 
  private:
   explicit ResultStore(std::filesystem::path folder) : folder_(std::move(folder)) {}

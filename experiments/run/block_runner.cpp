@@ -76,9 +76,11 @@ class BlockRun {
     collect_cells();
     if (std::ranges::any_of(runners_, [](const Runner& r) { return r.missing_rounds > 0; })) {
       tell_of_leaks();
-      trace_truth();
-      build_cullers();
-      time_rounds();
+      if (trace_truth()) {
+        build_cullers();
+        time_rounds();
+      }
+      outcome_.stopped = stop_ != 0;
     }
     for (Runner& runner : runners_) give_back(runner);
     judge();
@@ -249,8 +251,9 @@ class BlockRun {
     return cell;
   }
 
-  void trace_truth() {
-    if (caster_) return;
+  /// False if the run is stopped before all frames are traced; those that were are stored.
+  bool trace_truth() {
+    if (caster_) return truth_->frame_count() == path_.frames.size();
     caster_ = std::make_unique<RayCaster>(*scene_, truth_settings_);
     truth_ = std::make_unique<PathTruth>(*scene_);
     truth_keys_.clear();
@@ -258,6 +261,7 @@ class BlockRun {
     SceneState state(*scene_);
     for_each_frame(
         path_, state, block_.viewport, [&](std::size_t index, Frame& frame, const Changes&) {
+          if (stop_ != 0) return;
           progress_.step(
               block_.title() + ": rays of frame " + std::to_string(index + 1) + " of " +
                   std::to_string(path_.frames.size()),
@@ -271,6 +275,7 @@ class BlockRun {
           truth_->add(std::move(*seen));
           truth_keys_.push_back(key);
         });
+    return truth_->frame_count() == path_.frames.size();
   }
 
   /// Runs `work` for a cell; what it throws makes the cell fail, unless a file cannot be written.
@@ -443,7 +448,6 @@ class BlockRun {
       if (stop_ == 0) keep_round(order);
       for (Runner* runner : order) runner->pass.reset();
     }
-    outcome_.stopped = stop_ != 0;
   }
 
   /// Adds the passes of a whole round to their cells, each with the round's anchors, and saves
@@ -510,7 +514,10 @@ class BlockRun {
       judged.push_back(&runner.cell);
     }
     if (judged.empty()) return;
-    trace_truth();
+    if (!trace_truth()) {
+      outcome_.stopped = true;
+      return;
+    }
     judge_cells(judged, *scene_, path_, block_.viewport, *truth_, *caster_,
                 device_spec_.kind != DeviceSpec::Kind::none, store_, progress_);
   }

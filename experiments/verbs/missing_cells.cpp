@@ -63,7 +63,7 @@ MatrixShare share_of(const Matrix& matrix, const std::map<BlockName, StoredBlock
 
 }  // namespace
 
-PlannedGaps find_planned_gaps(const std::vector<Matrix>& matrices,
+PlannedGaps find_planned_gaps(const std::vector<Matrix>& matrices, const std::set<std::string>& run,
                               const std::vector<const ResultCell*>& cells,
                               const Registry& cullers) {
   std::map<BlockName, StoredBlock> stored;
@@ -77,9 +77,8 @@ PlannedGaps find_planned_gaps(const std::vector<Matrix>& matrices,
   PlannedGaps gaps;
   std::set<std::pair<BlockName, Place>> told;  // several matrices may plan the same
   for (const Matrix& matrix : matrices) {
-    const MatrixShare share = share_of(matrix, stored, cullers);
-    if (share.present > 0) gaps.matrices.push_back(share);
-    if (2 * share.present <= share.planned) continue;
+    if (!run.contains(matrix.name)) continue;
+    gaps.matrices.push_back(share_of(matrix, stored, cullers));
     const std::string reason = "the matrix " + matrix.name +
                                " plans it, and no cell of it is in the results that was measured "
                                "with the sources as they are; 'vislab run " +

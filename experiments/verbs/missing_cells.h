@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,15 +24,13 @@ struct PlannedGaps {
   /// By the id of any cell that is there: what its block lacks.
   std::map<std::string, std::vector<PlannedGap>> of_block_with;
   std::vector<PlannedGap> blocks;  // of which nothing is there
-  /// Of every matrix with a cell that is there, however few they are; in the matrices' order.
+  /// Of every matrix that was run, in the matrices' order.
   std::vector<MatrixShare> matrices;
 };
 
-/// Results do not say which matrices were run; one of which more than half of the cells are there
-/// counts as run, for it was, or was interrupted; gaps are told of these only, shares of all.
-/// `cells` are those that count. A cell belongs to a planned block if scene, path, size, frames,
-/// device and seed are the same.
-PlannedGaps find_planned_gaps(const std::vector<Matrix>& matrices,
+/// What the matrices that were `run`, by name, plan and `cells`, those that count, do not hold. A
+/// cell belongs to a planned block if scene, path, size, frames, device and seed are the same.
+PlannedGaps find_planned_gaps(const std::vector<Matrix>& matrices, const std::set<std::string>& run,
                               const std::vector<const ResultCell*>& cells, const Registry& cullers);
 
 /// All matrices of the folder; one that cannot be read says nothing of gaps.

@@ -114,10 +114,12 @@ std::string stored_query_picture(const Lab& lab, StoredScenes& scenes, const Blo
   return place + ", on " + spec.text;
 }
 
-PlannedGaps gaps_of(const Lab& lab, const std::vector<JudgedCell>& cells) {
+PlannedGaps gaps_of(const Lab& lab, const std::filesystem::path& results,
+                    const std::vector<JudgedCell>& cells) {
+  const std::set<std::string> run = ResultStore::open(results).noted_matrices();
   std::vector<const ResultCell*> present;
   for (const JudgedCell& judged : cells) present.push_back(&judged.cell);
-  return find_planned_gaps(readable_matrices(lab.matrices, lab.cullers), present, lab.cullers);
+  return find_planned_gaps(readable_matrices(lab.matrices, lab.cullers), run, present, lab.cullers);
 }
 
 }  // namespace
@@ -164,7 +166,7 @@ int report(const Lab& lab, const std::filesystem::path& results,
   input.kinds_picture = [&](const BlockSummary& block, const std::filesystem::path& file) {
     return write_stored_kinds(results, lab.cullers, scenes, block, file);
   };
-  const PlannedGaps gaps = gaps_of(lab, cells);
+  const PlannedGaps gaps = gaps_of(lab, results, cells);
   input.missing_cells = [&](const BlockSummary& block) {
     std::vector<MissingCell> missing;
     for (const CellSummary& cell : block.cells) {

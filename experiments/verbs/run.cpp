@@ -25,6 +25,7 @@ struct Work {
   std::vector<Block> blocks;
   std::vector<Sweep> sweeps;
   std::vector<std::size_t> first_block;  // of each sweep
+  std::vector<std::string> matrices;     // of the lab
 };
 
 void tell_absent(const std::string& name, const std::vector<std::string>& absent) {
@@ -86,6 +87,7 @@ void add_named(Work& work, const std::string& name, const Lab& lab,
               << left_out.package << " has not been fetched; `./lab setup` fetches it\n";
   }
   work.blocks.insert(work.blocks.end(), matrix.blocks.begin(), matrix.blocks.end());
+  if (is_in(lab.matrices)) work.matrices.push_back(name);
 }
 
 Work work_of(const Lab& lab, const RunCall& call) {
@@ -292,12 +294,16 @@ int run(const Lab& lab, const RunCall& call) {
   options.settings.retry_failed = call.retry_failed;
   std::tie(options.shard, options.shards) = parse_shard(call.shard);
   options.quiet = call.quiet;
-  ResultStore::create(call.results);  // wrong folders are told before any work
+  // Wrong folders are told before any work.
+  const ResultStore store = ResultStore::create(call.results);
   const FolderLock lock(call.results, [&] {
     std::cerr << "vislab: another run writes into " << call.results.string()
               << "; waiting for it to end\n";
   });
   for (const Sweep& sweep : work.sweeps) write_sweep_files(sweep);
+  if (call.filter.empty()) {
+    for (const std::string& matrix : work.matrices) store.note_matrix(matrix);
+  }
   const RunOutcome outcome = run_blocks(work.blocks, options, lab.cullers);
   for (std::size_t i = 0; i < work.sweeps.size(); ++i) {
     note_sweep_cells(work.sweeps[i], outcome, work.first_block[i], call.results);

@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "common/scene/error.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/input_error.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {
@@ -106,12 +107,7 @@ TEST(Baseline, ComesBackFromItsText) {
 TEST(Baseline, RefusesWhatIsNoneWithFileAndLine) {
   const TemporaryFolder folder;
   const auto refusal = [&](const std::string& text) {
-    try {
-      load_baseline(folder.write("baseline.toml", text));
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return input_error([&] { load_baseline(folder.write("baseline.toml", text)); });
   };
   EXPECT_NE(refusal("a = 1\n").find("baseline.toml:1"), std::string::npos);
   EXPECT_NE(refusal("[\"a\"]\nb = 3\n").find("baseline.toml:2"), std::string::npos);

@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "common/scene/error.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/input_error.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {
@@ -33,12 +34,7 @@ TEST(Coverage, RefusesRowsWithNeitherSweepNorReasonWithBothAndBeyondTheEnd) {
   const TemporaryFolder folder;
   const auto file = folder.write("entries.toml", second_without);
   const auto message = [&](const std::vector<std::string>& failures) {
-    try {
-      atlas_coverage(sweeps_of(failures), file);
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return input_error([&] { atlas_coverage(sweeps_of(failures), file); });
   };
   EXPECT_NE(message({"F1"}).find("F3 has no sweep"), std::string::npos) << message({"F1"});
   EXPECT_NE(message({"F1", "F2", "F3"}).find("F2 has a sweep"), std::string::npos);

@@ -7,9 +7,9 @@
 #include <set>
 
 #include "algorithms/all_cullers.h"
-#include "common/scene/error.h"
 #include "experiments/matrix/matrix.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/input_error.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {
@@ -33,12 +33,7 @@ class Errata : public testing::Test {
   }
 
   std::string message(const std::string& text) {
-    try {
-      load(text);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return input_error([&] { load(text); });
   }
 
   CellSummary cell(const std::string& chain, std::uint64_t false_px, double over) {

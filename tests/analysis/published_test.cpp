@@ -13,11 +13,11 @@
 #include <set>
 
 #include "algorithms/all_cullers.h"
-#include "common/scene/error.h"
 #include "experiments/analysis/knees_file.h"
 #include "experiments/matrix/matrix.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/input_error.h"
 #include "tests/report/fabricated.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {
@@ -33,12 +33,7 @@ class Published : public ::testing::Test {
     return load_published(folder_.path(), registry_).at(0).rows;
   }
   std::string refusal(const std::string& text) {
-    try {
-      rows(text);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return input_error([&] { rows(text); });
   }
   /// A block on scene "city" with none and one cell of frustum.flat, as long as half of none.
   BlockSummary block() const {

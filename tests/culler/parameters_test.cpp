@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/scene/error.h"
+#include "tests/input_error.h"
 
 namespace vislab {
 namespace {
@@ -21,12 +21,7 @@ ParameterValues values(const std::map<std::string, std::string>& given) {
 }
 
 std::string refusal(const std::map<std::string, std::string>& given) {
-  try {
-    values(given);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return input_error([&] { values(given); });
 }
 
 bool has(const std::string& text, const std::string& part) {

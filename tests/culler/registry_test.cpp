@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/all_cullers.h"
-#include "common/scene/error.h"
+#include "tests/input_error.h"
 
 namespace vislab {
 namespace {
@@ -15,12 +15,7 @@ Registry all_cullers() {
 }
 
 std::string refusal(const std::string& spec) {
-  try {
-    all_cullers().make(spec);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return input_error([&] { all_cullers().make(spec); });
 }
 
 TEST(Registry, KnowsTheCullersOfTheLab) {

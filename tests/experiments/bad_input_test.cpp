@@ -3,8 +3,9 @@
 
 #include <algorithm>
 
+#include "tests/temporary_folder.h"
+
 #include "tests/experiments/program.h"
-#include "tests/experiments/temporary_folder.h"
 
 namespace vislab {
 namespace {

@@ -1,6 +1,7 @@
 // What may come between a verb and its files: a user who does not wait, a disk that is full under
 // verbs that write, other runs into the same folder, files of older formats.
 #include <gtest/gtest.h>
+#include <signal.h>
 
 #include <algorithm>
 #include <future>
@@ -9,7 +10,7 @@
 #include "experiments/results/files.h"
 #include "experiments/results/store.h"
 #include "tests/experiments/program.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {
@@ -53,6 +54,17 @@ class Interference : public ::testing::Test {
 
   TemporaryFolder folder_;
 };
+
+TEST_F(Interference, AnInterruptDoesNotWaitForTheRaysOfTheWholePath) {
+  constexpr int frames = 3000;
+  const ProgramResult stopped = signal_vislab(call("frustum.flat", 1, frames), SIGINT,
+                                              [&] { return files_in("truth") > 0; });
+  EXPECT_EQ(stopped.exit_code, 1) << stopped.err;
+  expect_one_line(stopped.err, "stopped; the same call goes on from here");
+  EXPECT_LT(files_in("truth"), static_cast<std::size_t>(frames));
+  EXPECT_TRUE(cells().empty());
+  expect_nothing_half_written();
+}
 
 TEST_F(Interference, ASecondInterruptDoesNotWaitForTheWorkUnderWay) {
   // Rays of the whole path come before the first pass.

@@ -7,9 +7,9 @@
 #include <set>
 
 #include "algorithms/all_cullers.h"
-#include "common/scene/error.h"
 #include "common/scene/library.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/input_error.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {
@@ -21,12 +21,7 @@ class MatrixFile : public ::testing::Test {
     return load_matrix(folder_.write("test.toml", text), folder_.path(), registry_);
   }
   std::string refusal(const std::string& text) {
-    try {
-      load(text);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return input_error([&] { load(text); });
   }
 
   Registry registry_;

@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "experiments/results/files.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {

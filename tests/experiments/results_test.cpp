@@ -6,7 +6,7 @@
 #include "common/scene/error.h"
 #include "experiments/results/files.h"
 #include "experiments/results/store.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {
@@ -221,6 +221,19 @@ TEST(ResultStore, VerdictsOfAnotherJudgeOrDamagedOnesDoNotCount) {
   EXPECT_FALSE(store.load_verdicts(changed, "judge").has_value()) << "verdicts on other answers";
   write_file(folder.path() / "verdicts" / (cell.key.id() + ".json"), "{\"judge\":\"jud");
   EXPECT_FALSE(store.load_verdicts(cell, "judge").has_value());
+}
+
+TEST(ResultStore, KnowsWhichMatricesWereRunInIt) {
+  const TemporaryFolder folder;
+  const ResultStore store = ResultStore::create(folder.path());
+  EXPECT_TRUE(store.noted_matrices().empty());
+  store.note_matrix("smoke");
+  store.note_matrix("smoke");
+  store.note_matrix("default");
+  EXPECT_EQ(ResultStore::open(folder.path()).noted_matrices(),
+            (std::set<std::string>{"default", "smoke"}));
+  std::filesystem::remove_all(folder.path() / "matrices");  // as of an older version
+  EXPECT_TRUE(store.noted_matrices().empty());
 }
 
 TEST(Files, AFileThatCannotBeWrittenLeavesNothing) {

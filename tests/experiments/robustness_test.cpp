@@ -8,12 +8,11 @@
 #include <future>
 #include <map>
 
-#include "common/scene/error.h"
 #include "experiments/results/files.h"
 #include "experiments/results/folder_lock.h"
 #include "experiments/results/store.h"
 #include "tests/experiments/program.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {

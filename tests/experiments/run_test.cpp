@@ -7,7 +7,7 @@
 #include "experiments/results/files.h"
 #include "experiments/results/store.h"
 #include "tests/experiments/program.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {

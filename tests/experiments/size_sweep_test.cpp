@@ -10,7 +10,8 @@
 #include "common/scene/error.h"
 #include "experiments/analysis/knees_file.h"
 #include "experiments/matrix/size_coverage.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/input_error.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {
@@ -35,12 +36,7 @@ class SizeSweepTest : public ::testing::Test {
     return load_size_sweep(folder_.write("test.toml", text), folder_.path(), registry_);
   }
   std::string refusal(const std::string& text) {
-    try {
-      load(text);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return input_error([&] { load(text); });
   }
 
   Registry registry_;

@@ -7,7 +7,7 @@
 #include <regex>
 
 #include "experiments/results/files.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {

@@ -7,8 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tests/temporary_folder.h"
+
 #include "tests/experiments/program.h"
-#include "tests/experiments/temporary_folder.h"
 
 namespace vislab {
 namespace {

@@ -20,7 +20,7 @@
 #include "common/scene/error.h"
 #include "common/scene/library.h"
 #include "tests/geometry/exact_containment.h"
-#include "tests/scene/test_files.h"
+#include "tests/scene/repository_data.h"
 
 namespace vislab {
 namespace {

@@ -1,9 +1,9 @@
 #include "common/judge/path_truth.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "tests/judge/judge_scenes.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {
@@ -48,9 +48,8 @@ TEST(PathTruth, gives_oracles_the_visible_objects_and_merged_ranges_of_triangles
 TEST(PathTruth, comes_from_the_store_the_second_time) {
   Scene scene = cubes_at({{0.0, 0.0, 0.0}, {0.0, 0.0, -5.0}, {3.0, 0.0, 0.0}});
   scene.finish();
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("vislab_path_truth_" + std::to_string(getpid()));
-  std::filesystem::remove_all(folder);
+  const TemporaryFolder temporary;
+  const std::filesystem::path& folder = temporary.path();
   const TruthSettings settings;
   const TruthStore store(folder);
   RayCaster caster(scene, settings);
@@ -73,7 +72,6 @@ TEST(PathTruth, comes_from_the_store_the_second_time) {
   store.save(truth_key(frame, scene, settings), marked);
   const PathTruth third = trace_path(two_frames(), {64, 64}, settings, caster, &store);
   EXPECT_EQ(third.frame(0).ids[0], 5U);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 
 #include "common/judge/truth.h"
 #include "common/scene/error.h"
 #include "tests/judge/judge_scenes.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {
@@ -15,20 +15,16 @@ namespace fs = std::filesystem;
 class TruthStoreTest : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ =
-        fs::temp_directory_path() / ("vislab_truth_" + std::to_string(getpid()) + "_" +
-                                     testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
     Stage stage(random_triangles(40, 3.0, 0.8, 21), camera_at({0.0, 0.0, 8.0}, {0.0, 0.0, 0.0}),
                 {50, 41});
     RayCaster caster(stage.scene, {.jitter_per_pixel = 4, .seed = 1, .threads = 2});
     truth_ = caster.trace(stage.frame);
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   fs::path only_file() const { return fs::directory_iterator(folder_)->path(); }
 
-  fs::path folder_;
+  const TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
   FrameTruth truth_;
 };
 

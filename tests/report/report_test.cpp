@@ -1,7 +1,6 @@
 #include "report/report.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <fstream>
@@ -16,7 +15,9 @@
 #include "report/page.h"
 #include "report/pdf_pages.h"
 #include "report/process.h"
+#include "tests/input_error.h"
 #include "tests/report/fabricated.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {
@@ -32,15 +33,8 @@ std::string read(const fs::path& file) {
 
 class Report : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() /
-              ("vislab-report-test-" + std::string(test->name()) + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  fs::path folder_;
+  const TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 ReportInput fabricated_input() {
@@ -441,19 +435,10 @@ class PathOnly {
   std::string before_;
 };
 
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 TEST_F(Report, AMissingProgramIsNamedWithItsPackageAndNothingIsWritten) {
   const PathOnly empty(folder_);
   const std::string message =
-      message_of([&] { write_report(fabricated_input(), templates, folder_ / "out"); });
+      input_error([&] { write_report(fabricated_input(), templates, folder_ / "out"); });
   EXPECT_NE(message.find("gnuplot"), std::string::npos) << message;
   EXPECT_NE(message.find("gnuplot-nox"), std::string::npos) << message;
   EXPECT_FALSE(fs::exists(folder_ / "out"));
@@ -473,7 +458,8 @@ TEST_F(Report, AProgramThatFailsLeavesTheOldReportAsItWas) {
                 "for a in \"$@\"; do case $a in --output=*) echo >${a#--output=};; esac; done");
   write_program(folder_ / "chromium", "echo 'no display'; exit 3");
   const PathOnly programs(folder_);
-  const std::string message = message_of([&] { write_report(fabricated_input(), templates, out); });
+  const std::string message =
+      input_error([&] { write_report(fabricated_input(), templates, out); });
   EXPECT_NE(message.find("chromium failed while writing the report: no display"), std::string::npos)
       << message;
   EXPECT_EQ(read(out / "index.html"), "old");
@@ -483,7 +469,7 @@ TEST_F(Report, AProgramThatFailsLeavesTheOldReportAsItWas) {
 TEST_F(Report, AProgramThatHangsIsEnded) {
   write_program(folder_ / "sleeper", "/bin/sleep 100");
   const PathOnly programs(folder_);
-  const std::string message = message_of([&] {
+  const std::string message = input_error([&] {
     run_program({"sleeper", "none"}, {}, folder_, std::chrono::seconds(1));
   });
   EXPECT_NE(message.find("did not end within 1 s"), std::string::npos) << message;
@@ -492,7 +478,7 @@ TEST_F(Report, AProgramThatHangsIsEnded) {
 TEST_F(Report, AFolderThatCannotBeMadeIsAnInputError) {
   std::ofstream(folder_ / "file") << "in the way";
   const std::string message =
-      message_of([&] { write_report(fabricated_input(), templates, folder_ / "file" / "out"); });
+      input_error([&] { write_report(fabricated_input(), templates, folder_ / "file" / "out"); });
   EXPECT_NE(message.find("cannot be written"), std::string::npos) << message;
 }
 

@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "common/scene/cell_check.h"
-#include "tests/scene/test_files.h"
+#include "tests/input_error.h"
+#include "tests/scene/repository_data.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {
-
-using test::ScratchFolder;
 
 /// A sheet that reaches through two cells.
 constexpr const char* mesh = "OFF\n3 1 0\n-2 0.5 0\n2 0.5 0\n-2 0.5 1\n3 0 1 2\n";
@@ -33,13 +33,13 @@ to = 1
 corners = [[0, 0, -1], [0, 0, 1], [0, 2, 1], [0, 2, -1]]
 )";
 
-Scene loaded(const ScratchFolder& folder, const std::string& text) {
+Scene loaded(const TemporaryFolder& folder, const std::string& text) {
   folder.write("mesh.off", mesh);
   return load_scene(folder.write("scene.toml", text).string(), test::repository_data()).scene;
 }
 
 TEST(CellSettings, ReadBoxesPlanesAndPortalsBothWays) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const Scene scene = loaded(folder, std::string(two_cells) + portal);
   ASSERT_EQ(scene.cells.size(), 2U);
   EXPECT_EQ(scene.cells[0].regions.size(), 2U);
@@ -61,7 +61,7 @@ std::string with_corners(const std::string& corners) {
 }
 
 TEST(CellSettings, TakeCornersOnStraightEdgesAndRepeatedOnes) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   // On an edge through thirds and tenths, where rounding makes corners turn right a little.
   const Scene scene =
       loaded(folder, with_corners("[[0, 0, -2], [0, 0, -2], [0, 0, 1], [0, 3, 1], [0, 2.1, 0.1],"
@@ -80,31 +80,28 @@ TEST(CellSettings, TakeCornersOnStraightEdgesAndRepeatedOnes) {
 }
 
 TEST(CellSettings, RefusePortalsThatAreNotConvexOrNotFlat) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const auto message = [&](const std::string& corners) {
-    return test::input_error([&] { loaded(folder, with_corners(corners)); });
+    return input_error([&] { loaded(folder, with_corners(corners)); });
   };
   const std::string convex = "it must be a convex polygon, whose";
   const std::string l_shape = "[[0, 0, -2], [0, 0, 2], [0, 1, 2], [0, 1, 0],";
-  EXPECT_TRUE(test::says(message(l_shape + "[0, 3, 0], [0, 3, -2]]"), convex));
-  EXPECT_TRUE(test::says(message(l_shape + "[0, 1, 0], [0, 3, 0], [0, 3, -2]]"), convex));
-  EXPECT_TRUE(test::says(message("[[0, 2.5, 0], [0, 0.38, 0.69], [0, 1.69, -1.11], "
-                                 "[0, 1.69, 1.11], [0, 0.38, -0.69]]"),
-                         convex))
+  EXPECT_TRUE(says(message(l_shape + "[0, 3, 0], [0, 3, -2]]"), convex));
+  EXPECT_TRUE(says(message(l_shape + "[0, 1, 0], [0, 3, 0], [0, 3, -2]]"), convex));
+  EXPECT_TRUE(says(message("[[0, 2.5, 0], [0, 0.38, 0.69], [0, 1.69, -1.11], "
+                           "[0, 1.69, 1.11], [0, 0.38, -0.69]]"),
+                   convex))
       << "a star";
-  EXPECT_TRUE(
-      test::says(message("[[0, 0, 0], [0, 0, 2], [0, 0, 1], [0, 1, 1], [0, 1, 0]]"), convex))
+  EXPECT_TRUE(says(message("[[0, 0, 0], [0, 0, 2], [0, 0, 1], [0, 1, 1], [0, 1, 0]]"), convex))
       << "an edge that turns back";
-  EXPECT_TRUE(
-      test::says(message("[[0, 0, 0], [0, 0, 1], [0, 0, 1], [0, 0, 0]]"), "three different"));
-  EXPECT_TRUE(
-      test::says(message("[[0, 0, -1], [0, 0, 1], [0, 2, 1], [0.002, 2, -1]]"), "one plane"));
+  EXPECT_TRUE(says(message("[[0, 0, 0], [0, 0, 1], [0, 0, 1], [0, 0, 0]]"), "three different"));
+  EXPECT_TRUE(says(message("[[0, 0, -1], [0, 0, 1], [0, 2, 1], [0.002, 2, -1]]"), "one plane"));
   EXPECT_NO_THROW(
       loaded(folder, with_corners("[[0, 0, -1], [0, 0, 1], [0, 2, 1], [0.0001, 2, -1]]")));
 }
 
 TEST(CellSettings, RefuseEdgesThatTurnBackWhicheverWayRoundingTurnsThem) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   for (int i = 0; i < 24; ++i) {
     const glm::dvec3 along(0.0, std::sin(0.3 * i), std::cos(0.3 * i));
     const glm::dvec3 aside(0.0, along.z, -along.y);  // to the left, seen from smaller x
@@ -115,14 +112,14 @@ TEST(CellSettings, RefuseEdgesThatTurnBackWhicheverWayRoundingTurnsThem) {
       corners += (corners.empty() ? "[0, " : ", [0, ") + std::to_string(p.y) + ", " +
                  std::to_string(p.z) + "]";
     }
-    EXPECT_TRUE(test::says(
-        test::input_error([&] { loaded(folder, with_corners("[" + corners + "]")); }), "convex"))
+    EXPECT_TRUE(
+        says(input_error([&] { loaded(folder, with_corners("[" + corners + "]")); }), "convex"))
         << i;
   }
 }
 
 TEST(CellSettings, AreCheckedAsExactlyAsWalksNeed) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const Scene scene = loaded(folder, std::string(two_cells) + portal);
   const auto off = [&](double x) {
     Scene moved = scene;
@@ -140,31 +137,31 @@ TEST(CellSettings, AreCheckedAsExactlyAsWalksNeed) {
 }
 
 TEST(CellSettings, RefuseWhatIsNoCellOrNoPortal) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const auto refused = [&](const std::string& text) {
-    return test::input_error([&] { loaded(folder, text); });
+    return input_error([&] { loaded(folder, text); });
   };
   const std::string head = "[mesh]\nfile = \"mesh.off\"\n";
   const std::string cells = two_cells;
-  EXPECT_TRUE(test::says(refused(head + portal), "`portals` needs `cells`"));
-  EXPECT_TRUE(test::says(refused(head + "[[cells]]\n"), "either `boxes` or"));
-  EXPECT_TRUE(test::says(refused(head + "[[cells]]\nboxes = [[0, 0, 0]]\n"), "lower and an upper"));
-  EXPECT_TRUE(test::says(refused(head + "[[cells]]\nboxes = [[0, 0, 0], [1, 0, 1]]\n"), "box 0"));
-  EXPECT_TRUE(test::says(refused(head + "[[cells]]\nthrough = [[0, 0, 0]]\ninward = [[1, 0, 0]]\n"),
-                         "no region"));
-  EXPECT_TRUE(test::says(refused(head + "[[cells]]\nthrough = [[0, 0, 0]]\ninward = [[0, 0, 0]]\n"),
-                         "zero"));
-  EXPECT_TRUE(test::says(refused(with_corners("[[0, 0, 0], [0, 1, 0]]")), "three different"));
-  EXPECT_TRUE(test::says(refused(with_corners("[[0, 0, 0], [0, 0, 1], [0, 2, 1], [1, 2, 0]]")),
-                         "one plane"));
-  EXPECT_TRUE(test::says(refused(with_corners("[[0, 0, -1], [0, 0.1, 0], [0, 0, 1], [0, 2, 0]]")),
-                         "convex"));
-  EXPECT_TRUE(test::says(refused(cells + "[[portals]]\nfrom = 0\nto = 0\ncorners = [[0, 0, 0]]\n"),
-                         "different"));
-  EXPECT_TRUE(test::says(refused(cells + "[[portals]]\nfrom = 0\nto = 2\ncorners = [[0, 0, 0]]\n"),
-                         "`to`"));
+  EXPECT_TRUE(says(refused(head + portal), "`portals` needs `cells`"));
+  EXPECT_TRUE(says(refused(head + "[[cells]]\n"), "either `boxes` or"));
+  EXPECT_TRUE(says(refused(head + "[[cells]]\nboxes = [[0, 0, 0]]\n"), "lower and an upper"));
+  EXPECT_TRUE(says(refused(head + "[[cells]]\nboxes = [[0, 0, 0], [1, 0, 1]]\n"), "box 0"));
+  EXPECT_TRUE(says(refused(head + "[[cells]]\nthrough = [[0, 0, 0]]\ninward = [[1, 0, 0]]\n"),
+                   "no region"));
   EXPECT_TRUE(
-      test::says(refused("[generator]\nkind = \"room_line\"\n[[cells]]\nboxes = []\n"), "`cells`"));
+      says(refused(head + "[[cells]]\nthrough = [[0, 0, 0]]\ninward = [[0, 0, 0]]\n"), "zero"));
+  EXPECT_TRUE(says(refused(with_corners("[[0, 0, 0], [0, 1, 0]]")), "three different"));
+  EXPECT_TRUE(
+      says(refused(with_corners("[[0, 0, 0], [0, 0, 1], [0, 2, 1], [1, 2, 0]]")), "one plane"));
+  EXPECT_TRUE(
+      says(refused(with_corners("[[0, 0, -1], [0, 0.1, 0], [0, 0, 1], [0, 2, 0]]")), "convex"));
+  EXPECT_TRUE(
+      says(refused(cells + "[[portals]]\nfrom = 0\nto = 0\ncorners = [[0, 0, 0]]\n"), "different"));
+  EXPECT_TRUE(
+      says(refused(cells + "[[portals]]\nfrom = 0\nto = 2\ncorners = [[0, 0, 0]]\n"), "`to`"));
+  EXPECT_TRUE(
+      says(refused("[generator]\nkind = \"room_line\"\n[[cells]]\nboxes = []\n"), "`cells`"));
 }
 
 }  // namespace

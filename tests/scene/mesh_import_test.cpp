@@ -8,14 +8,11 @@
 #include <cstdint>
 #include <cstring>
 
-#include "tests/scene/test_files.h"
+#include "tests/input_error.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {
-
-using test::input_error;
-using test::says;
-using test::ScratchFolder;
 
 const std::string tetrahedron_off =
     "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
@@ -87,7 +84,7 @@ class MeshImport : public testing::Test {
     }
   }
 
-  ScratchFolder folder_;
+  TemporaryFolder folder_;
 };
 
 /// The corners of all triangles in their order: what a file says, whatever numbers its vertices

@@ -7,14 +7,12 @@
 #include <set>
 
 #include "common/scene/generators/generators.h"
-#include "tests/scene/test_files.h"
+#include "tests/input_error.h"
+#include "tests/scene/repository_data.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {
-
-using test::input_error;
-using test::says;
-using test::ScratchFolder;
 
 const std::vector<double> quarters{0.0, 0.25, 0.5, 0.75, 1.0};
 
@@ -235,7 +233,7 @@ class MovingPaths : public testing::Test {
     return input_error([&]() { load(motion); });
   }
 
-  ScratchFolder folder_;
+  TemporaryFolder folder_;
   Scene scene_ = box_field(40);
 };
 

@@ -11,15 +11,14 @@
 #include "common/scene/generators/occlusion.h"
 #include "common/scene/generators/surfaces.h"
 #include "common/scene/library.h"
-#include "tests/scene/test_files.h"
+#include "tests/input_error.h"
+#include "tests/scene/repository_data.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {
 
-using test::input_error;
 using test::repository_data;
-using test::says;
-using test::ScratchFolder;
 
 Scene finished(Scene scene) {
   scene.finish();
@@ -442,7 +441,7 @@ TEST(Surfaces, TheFenceHasAsManySlatsOnAScanlineAsItsDialSays) {
 }
 
 TEST(OcclusionScenes, RefuseWrongDials) {
-  ScratchFolder folder;
+  TemporaryFolder folder;
   const auto refused = [&](const std::string& text) {
     folder.write("scene.toml", "[generator]\n" + text);
     return input_error([&] { load_scene((folder.path() / "scene.toml").string(), {}); });

@@ -6,14 +6,12 @@
 #include "common/scene/generators/generators.h"
 #include "common/scene/paths/tracks.h"
 #include "common/scene/settings.h"
-#include "tests/scene/test_files.h"
+#include "tests/input_error.h"
+#include "tests/scene/repository_data.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {
-
-using test::input_error;
-using test::says;
-using test::ScratchFolder;
 
 Scene slab_scene() {
   Scene scene;
@@ -33,7 +31,7 @@ class Paths : public testing::Test {
     return input_error([&]() { load(toml); });
   }
 
-  ScratchFolder folder_;
+  TemporaryFolder folder_;
   Scene scene_ = slab_scene();
 };
 

@@ -9,13 +9,11 @@
 #include "common/scene/orientation.h"
 #include "common/scene/quake_gaps.h"
 #include "common/scene/quake_leaves.h"
-#include "tests/scene/test_files.h"
+#include "tests/input_error.h"
 
 namespace vislab {
 namespace {
 
-using test::input_error;
-using test::says;
 using Cells = QuakeCellLimits::Cells;
 
 Aabb box_of(const glm::vec3& low, const glm::vec3& high) {

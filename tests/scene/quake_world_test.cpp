@@ -7,14 +7,12 @@
 #include <vector>
 
 #include "common/scene/quake_file.h"
-#include "tests/scene/test_files.h"
+#include "tests/input_error.h"
+#include "tests/scene/repository_data.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {
-
-using test::input_error;
-using test::says;
-using test::ScratchFolder;
 
 constexpr int lump_count = 17;
 
@@ -117,7 +115,7 @@ class QuakeWorldFile : public testing::Test {
     return input_error([&]() { import_quake_world(file); });
   }
 
-  ScratchFolder folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(QuakeWorldFile, MakesAnObjectOfTheFacesOfEachLeafAndEachBrushModel) {

@@ -12,7 +12,7 @@
 #include "common/scene/library.h"
 #include "common/scene/orientation.h"
 #include "common/scene/quake_world.h"
-#include "tests/scene/test_files.h"
+#include "tests/scene/repository_data.h"
 
 namespace vislab {
 namespace {

@@ -11,7 +11,7 @@
 #include "common/scene/generators/generators.h"
 #include "common/scene/generators/pierced_board.h"
 #include "common/scene/paths/tracks.h"
-#include "tests/scene/test_files.h"
+#include "tests/input_error.h"
 
 namespace vislab {
 namespace {
@@ -178,7 +178,7 @@ TEST(Rooms, RolledDoorsTurnInTheirWallsAndKeepTheirSize) {
     EXPECT_NEAR(area(scene.portals[0].polygon), 2.0, 1e-5);
   }
   line.door_height_m = 3.5;
-  EXPECT_TRUE(test::says(test::input_error([&] { make_rooms(line); }), "does not fit"));
+  EXPECT_TRUE(says(input_error([&] { make_rooms(line); }), "does not fit"));
 }
 
 TEST(Rooms, OverlappingCellsShareWhatTheDialSays) {
@@ -191,6 +191,33 @@ TEST(Rooms, OverlappingCellsShareWhatTheDialSays) {
       const glm::dvec3 point(0.0, 1.0, z);
       const bool both = in_cell(scene, 0, point) && in_cell(scene, 1, point);
       EXPECT_EQ(both, std::abs(z) < 0.5 * overlap) << overlap << " at " << z;
+    }
+  }
+}
+
+TEST(Rooms, SmallThingsLieInTheirRoomsAndMoveNothingElse) {
+  RoomsParameters house;
+  house.columns = house.rows = house.storeys = 2;
+  house.variation = 0.2;
+  const Scene without = finished(house);
+  house.small_things_per_room = 6;
+  const Scene scene = finished(house);
+  ASSERT_EQ(scene.object_count(), without.object_count() + 8U * 6U);
+  for (ObjectId object = 0; object < scene.object_count(); ++object) {
+    if (object < without.object_count()) {
+      EXPECT_EQ(scene.objects[object].transform, without.objects[object].transform);
+      continue;
+    }
+    ASSERT_NE(scene.objects[object].cell, none_id);
+    const Aabb& room = scene.cells[scene.objects[object].cell].regions.front().bounds;
+    for (const glm::vec3& position : scene.mesh_of(object).positions) {
+      const glm::dvec4 local(glm::dvec3(position), 1.0);
+      const glm::dvec3 in_world = scene.objects[object].transform * local;
+      EXPECT_LE(glm::distance(in_world, scene.objects[object].transform[3]), 0.06);
+      for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_GE(in_world[axis], room.min[axis]);
+        EXPECT_LE(in_world[axis], room.max[axis]);
+      }
     }
   }
 }

@@ -3,13 +3,10 @@
 #include "common/scene/frame.h"
 #include "common/scene/generators/generators.h"
 #include "common/scene/path.h"
-#include "tests/scene/test_files.h"
+#include "tests/input_error.h"
 
 namespace vislab {
 namespace {
-
-using test::input_error;
-using test::says;
 
 class SceneStateTest : public testing::Test {
  protected:

@@ -5,13 +5,10 @@
 #include <limits>
 
 #include "common/scene/generators/generators.h"
-#include "tests/scene/test_files.h"
+#include "tests/input_error.h"
 
 namespace vislab {
 namespace {
-
-using test::input_error;
-using test::says;
 
 Scene cubes(std::uint32_t count) {
   Scene scene;

@@ -2,13 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/scene/test_files.h"
+#include "tests/input_error.h"
 
 namespace vislab {
 namespace {
-
-using test::input_error;
-using test::says;
 
 Settings from(const std::string& text) { return Settings::from_text(text, "here.toml"); }
 

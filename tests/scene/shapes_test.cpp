@@ -3,15 +3,14 @@
 
 #include <cmath>
 
-#include "tests/scene/test_files.h"
+#include "tests/input_error.h"
+#include "tests/scene/repository_data.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {
 
-using test::input_error;
 using test::repository_data;
-using test::says;
-using test::ScratchFolder;
 
 class Shapes : public testing::Test {
  protected:
@@ -23,7 +22,7 @@ class Shapes : public testing::Test {
   }
 
  private:
-  ScratchFolder folder_;
+  TemporaryFolder folder_;
 };
 
 const std::string sphere = "[generator]\nkind = \"bumpy_sphere\"\nsubdivisions = 6\n";

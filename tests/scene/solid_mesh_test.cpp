@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "common/scene/generators/generators.h"
-#include "tests/scene/test_files.h"
+#include "tests/scene/repository_data.h"
 #include "tests/scene/test_meshes.h"
 
 namespace vislab {

@@ -6,7 +6,7 @@
 
 #include "common/scene/generators/swarm.h"
 #include "common/scene/library.h"
-#include "tests/scene/test_files.h"
+#include "tests/scene/repository_data.h"
 
 namespace vislab {
 namespace {

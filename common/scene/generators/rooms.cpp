@@ -88,6 +88,7 @@ class Building {
     for (std::uint32_t f = 0; f <= p_.storeys; ++f) add_floors(f);
     add_furniture();
     if (p_.windows == Windows::outside) add_things_outside();
+    if (p_.small_things_per_room > 0) add_small_things();
     for (Cell& cell : scene_.cells) {
       for (const ConvexRegion& region : cell.regions) cell.bounds.extend(region.bounds);
     }
@@ -415,6 +416,28 @@ class Building {
             scene_.objects.push_back({0, box_transform(center, half), cell(column, row, s)});
           }
         }
+      }
+    }
+  }
+
+  /// Between the corners, where the boxes are.
+  void add_small_things() {
+    constexpr double corner = 0.9, aside = 0.15;
+    const auto mesh = static_cast<MeshId>(scene_.meshes.size());
+    scene_.meshes.push_back(cube_mesh());
+    for (std::uint32_t room = 0; room < p_.storeys * p_.rows * p_.columns; ++room) {
+      const std::uint32_t column = room % p_.columns;
+      const std::uint32_t row = room / p_.columns % p_.rows;
+      const std::uint32_t storey = room / p_.columns / p_.rows;
+      const Span x = columns_[column];
+      const Span z = rows_[row];
+      for (std::uint32_t i = 0; i < p_.small_things_per_room; ++i) {
+        const glm::dvec3 half(things_.uniform(0.01, 0.03), things_.uniform(0.01, 0.03),
+                              things_.uniform(0.01, 0.03));
+        const glm::dvec3 center(things_.uniform(x.low + corner, x.high - corner),
+                                storeys_[storey].low + half.y + 0.01,
+                                (i & 1U) != 0 ? z.high - aside : z.low + aside);
+        scene_.objects.push_back({mesh, box_transform(center, half), cell(column, row, storey)});
       }
     }
   }

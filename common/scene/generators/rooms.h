@@ -37,8 +37,9 @@ struct RoomsParameters {
   bool crack_portal = true;   // the crack is a portal; else the cells do not know of it
   double overlap_m = 0.0;     // by which two cells share every opening between them
   Windows windows = Windows::none;
-  std::uint32_t boxes_per_room = 4;  // at most 20, in the rooms' corners
-  std::uint32_t box_triangles = 12;  // of each, or more
+  std::uint32_t boxes_per_room = 4;         // at most 20, in the rooms' corners
+  std::uint32_t box_triangles = 12;         // of each, or more
+  std::uint32_t small_things_per_room = 0;  // boxes of 2 to 6 cm, on the floor by two of the walls
   std::uint64_t seed = 1;
 };
 

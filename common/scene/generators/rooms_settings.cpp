@@ -60,6 +60,8 @@ std::optional<SceneMaker> read_rooms_scene(const std::string& kind, const Settin
   rooms.windows = windows_of(table);
   rooms.boxes_per_room = whole(table, "boxes_per_room", 0, 20, rooms.boxes_per_room);
   rooms.box_triangles = whole(table, "box_triangles", 12, 1'000'000, rooms.box_triangles);
+  rooms.small_things_per_room =
+      whole(table, "small_things_per_room", 0, 100, rooms.small_things_per_room);
   rooms.seed = static_cast<std::uint64_t>(
       table.whole("seed", 0, std::numeric_limits<std::int64_t>::max(), 1));
   return [rooms] { return make_rooms(rooms); };
