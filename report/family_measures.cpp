@@ -1,6 +1,7 @@
 #include "report/family_measures.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace vislab {
 namespace {
@@ -24,6 +25,9 @@ FamilyMethod method_of(const BlockSummary& block, const CellSummary& cell) {
   if (method.before != nullptr) {
     method.ratio = quotient(cell.against_none, method.before->against_none);
     method.kept = cell.submitted_triangles / method.before->submitted_triangles;
+  } else if (is_chain(cell)) {  // what its last stage adds is not known
+    method.ratio = Estimate::none();
+    method.kept = std::numeric_limits<double>::quiet_NaN();
   } else {
     method.ratio = cell.against_none;
     method.kept = cell.submitted_triangles / static_cast<double>(block.triangles);
@@ -42,7 +46,7 @@ bool was_outside_of_all_cells(const FamilyMethod& method) {
   if (method.before != nullptr) {
     return frames_outside(*method.cell) - frames_outside(*method.before) >= 1.0;
   }
-  return frames_outside(*method.cell) >= 1.0;
+  return !is_chain(*method.cell) && frames_outside(*method.cell) >= 1.0;
 }
 
 double worth(const BlockSummary& block, const FamilyMethod& method) {
@@ -81,7 +85,6 @@ FamilyOn family_on(const BlockSummary& block, const std::string& family, const R
     if (cell.anchor || !cell.judged || cell.status != ResultCell::Status::done) continue;
     if (family_of(cell, cullers) != family) continue;
     const FamilyMethod method = method_of(block, cell);
-    if (is_chain(cell) && method.before == nullptr) continue;
     if (!was_outside_of_all_cells(method)) found.methods.push_back(method);
   }
   for (const FamilyMethod& method : found.methods) {

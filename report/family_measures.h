@@ -23,11 +23,12 @@ const CellSummary* without_last_stage(const BlockSummary& block, const CellSumma
 /// Pointers lead into the block.
 struct FamilyMethod {
   const CellSummary* cell = nullptr;
-  const CellSummary* before = nullptr;  // what a chain is held to; null: none, of a single method
-  /// frame_ms ÷ that of `before` (or of none); NaN where nothing is drawn. Both are paired with
+  const CellSummary* before = nullptr;  // what it is held to; null: none
+  /// frame_ms ÷ that of `before` (or of none); NaN where nothing is drawn, and of a chain whose
+  /// beginning was not measured, for what its last stage adds is not known. Both are paired with
   /// none; of a chain the interval is the widest that theirs allow.
   Estimate ratio;
-  /// Triangles submitted ÷ those of `before` (or of the scene).
+  /// Triangles submitted ÷ those of `before` (or of the scene); NaN of such a chain.
   double kept = 0.0;
 
   /// The name of what it is held to: "none" or a chain.
@@ -35,9 +36,8 @@ struct FamilyMethod {
 };
 
 struct FamilyOn {
-  /// Finished and judged, no anchors; nor chains whose beginning was not measured, for what their
-  /// last stage adds is not known; nor methods that go from cell to cell whose viewer never was in
-  /// any, for they had nothing to work on.
+  /// Finished and judged, no anchors; nor methods that go from cell to cell whose viewer never was
+  /// in any, for they had nothing to work on.
   std::vector<FamilyMethod> methods;
   /// Without errors and not wrong on purpose: its last stage takes the least share of the time, or
   /// where nothing is drawn, leaves the least share of the triangles. Null: there is none.

@@ -147,8 +147,6 @@ class PersistenceChart {
       y.ticks.emplace_back(position(share), first ? text : "");
     }
     set_axis(out_, 'y', y);
-    // Tics that an earlier chart took away come back mirrored.
-    out_ << "set xtics nomirror\nset ytics nomirror\n";
     set_margins(out_, left, bottom, width, panel_height, height_);
     out_ << "plot $formula using 1:2 with lines " << formula_style << " notitle";
     for (std::size_t r = 0; r < rows_.size(); ++r) {

@@ -77,7 +77,7 @@ struct ReportInput {
   std::function<std::vector<MissingCell>(const BlockSummary& block)> missing_cells;
   /// Blocks of which no cell is in the results though their matrix was run.
   std::vector<MissingCell> missing_blocks;
-  /// The matrices of which any cell is in the results.
+  /// The matrices that were run.
   std::vector<MatrixShare> matrices;
   /// A cell's frame_ms by frame, each the median of its rounds. Throws InputError if the cell is no
   /// longer there. Empty function: no chart of them.

@@ -2,13 +2,15 @@
 //
 // Idea: what truth shows and the set lacks is found by merging two sorted lists; only if something
 // is lost are its samples looked at, each of them alone: the first kept triangle behind the lost
-// one is found by a ray, and the pair is disputed or not. Guarantee: every lost sample is either
+// one is found by a ray, and the pair is disputed or not; of a method that paints, also the pair
+// with the triangle that its image shows there. Guarantee: every lost sample is either
 // false or excused by the rules of is_disputed; none is excused in total. Cost: O(visible + runs);
 // with losses, a ray and a dispute for each lost sample of C and J. Limits: as truth's.
 #include "common/judge/metrics.h"
 
 #include <algorithm>
 #include <map>
+#include <stdexcept>
 
 #include "common/judge/disputed.h"
 
@@ -37,7 +39,8 @@ void classify(const Frame& frame, const VisibleSet& kept, RayCaster& caster,
     const auto column = static_cast<std::size_t>(sample.window_px.x);
     const auto row = static_cast<std::size_t>(sample.window_px.y);
     const TriangleId owner = owners[row * static_cast<std::size_t>(frame.viewport.width) + column];
-    sample.disputed = disputes(sample.window_px, sample.triangle, owner);
+    const bool is_shown = owner == none_id || kept.contains(owner);
+    sample.disputed = is_shown && disputes(sample.window_px, sample.triangle, owner);
   }
 }
 
@@ -154,6 +157,9 @@ void find_worst(const Scene& scene, const std::vector<LostSample>& lost, Granula
 
 Verdict judge_set(const Frame& frame, const FrameTruth& truth, const VisibleSet& kept,
                   Granularity granularity, RayCaster& caster, std::span<const TriangleId> owners) {
+  if (!owners.empty() && owners.size() != truth.ids.size()) {
+    throw std::logic_error("an image of another size than truth's was handed to the judge");
+  }
   const Scene& scene = caster.scene();
   Verdict verdict;
   verdict.pixels = truth.ids.size();

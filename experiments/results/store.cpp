@@ -184,7 +184,7 @@ void ResultStore::remove_unfinished() const {
   for (const char* part : {"cells", "sets", "images", "truth", "verdicts"}) {
     remove_temporary(folder_ / part, R"([0-9a-f]{32}(\.[a-z]+)?)");
   }
-  remove_temporary(folder_ / "matrices", "[^.]+");
+  remove_temporary(folder_ / "matrices", ".+");
   std::error_code code;  // no such folder: no sweep was run
   for (fs::directory_iterator sweep(folder_ / "stress", code), end; sweep != end && !code;
        sweep.increment(code)) {
@@ -194,6 +194,10 @@ void ResultStore::remove_unfinished() const {
     }
     remove_temporary(sweep->path(), R"(cells\.json|.+\.toml)");
   }
+}
+
+bool ResultStore::holds(const std::string& id) const {
+  return fs::exists(folder_ / "cells" / (id + ".json"));
 }
 
 std::optional<ResultCell> ResultStore::load_cell(const std::string& id) const {

@@ -5,7 +5,7 @@
 //   truth/KEY.truth    what rays saw, compressed
 //   verdicts/ID.json   what the judge made of a cell's sets; derived, may be deleted
 //   other_formats/N/   cells of format N that were measured again since
-//   matrices/NAME      says that the matrix was run, whole or in part
+//   matrices/NAME      says that the matrix was run, whole or in part (but not by --filter)
 //   stress/NAME/       what stress sweeps were asked, and which cells are theirs
 // Files are written to a temporary name and renamed (write_file).
 #pragma once
@@ -73,6 +73,8 @@ class ResultStore {
   /// Empty if there is none, or only one of another version of the format. Throws DamagedCell if it
   /// is corrupt, another InputError if it cannot be read.
   std::optional<ResultCell> load_cell(const std::string& id) const;
+  /// Is there a file of that cell, whole or damaged?
+  bool holds(const std::string& id) const;
   /// A cell of another format that has the same name is put aside, not overwritten, whatever was
   /// put aside before; a damaged one is overwritten.
   void save_cell(const ResultCell& cell) const;
@@ -96,7 +98,7 @@ class ResultStore {
   std::optional<CellVerdicts> load_verdicts(const ResultCell& cell, const std::string& judge) const;
   void save_verdicts(const std::string& id, const CellVerdicts& verdicts) const;
 
-  /// That a matrix of that name is run in this folder; what it plans and is not there is a gap.
+  /// That a matrix of that name was run in this folder; what it plans and is not there is a gap.
   void note_matrix(const std::string& name) const;
   std::set<std::string> noted_matrices() const;
 

@@ -76,7 +76,7 @@ class BlockRun {
     collect_cells();
     if (std::ranges::any_of(runners_, [](const Runner& r) { return r.missing_rounds > 0; })) {
       tell_of_leaks();
-      if (trace_truth()) {
+      if (trace_truth() && stop_ == 0) {
         build_cullers();
         time_rounds();
       }

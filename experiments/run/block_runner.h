@@ -61,8 +61,8 @@ struct CellWatch {
 /// device that are fitted, unless a cell of the block is done: the others then get its dials, for
 /// they are compared with it. Cells on a modelled device repeat whatever their methods declare:
 /// their times are the device's own, and a round that gives others is a failure. A cell that fails
-/// is stored with its reason. `stop` ends the run after the present pass. Throws InputError for
-/// scenes, paths and results that are wrong.
+/// is stored with its reason. `stop` ends the run after the present pass, or the rays of the
+/// present frame. Throws InputError for scenes, paths and results that are wrong.
 BlockOutcome run_block(const Block& block, const RunSettings& settings, const Registry& registry,
                        Progress& progress, const CellWatch& watch,
                        const volatile std::sig_atomic_t& stop);

@@ -194,7 +194,7 @@ Child watch_child(pid_t pid, int pipe) {
   std::string buffer;
   int passed_on = 0;
   for (;;) {
-    // The first wish to stop lets the present pass end, the second does not wait for it.
+    // The first wish to stop lets the present work end, the second does not wait for it.
     if (stop_requested > passed_on) {
       passed_on = stop_requested;
       ::kill(pid, passed_on == 1 ? SIGINT : SIGKILL);

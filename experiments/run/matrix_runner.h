@@ -27,10 +27,11 @@ struct RunOutcome {
 
 /// Each block runs in a child process: its memory is given back, a crash or a hang of a cell is put
 /// down to that cell and the block goes on without it. To be called before the process has started
-/// threads. Ctrl-C (or SIGTERM) lets the present pass end; whole rounds are
-/// kept, the one under way is measured again next time. A second Ctrl-C does not wait. A result
-/// that cannot be written, as on a full disk, ends the run as an error; its cell is not marked as
-/// failed. The caller has made the results folder (ResultStore::create) and holds its FolderLock.
+/// threads. Ctrl-C (or SIGTERM) lets the present pass end, or the rays of the
+/// present frame; whole rounds are kept, the one under way is measured again next time. A second
+/// Ctrl-C does not wait. A result that cannot be written, as on a full disk, ends the run as an
+/// error; its cell is not marked as failed. The caller has made the results folder
+/// (ResultStore::create) and holds its FolderLock.
 RunOutcome run_blocks(const std::vector<Block>& blocks, const RunOptions& options,
                       const Registry& registry);
 

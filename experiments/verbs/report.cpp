@@ -119,7 +119,9 @@ PlannedGaps gaps_of(const Lab& lab, const std::filesystem::path& results,
   const std::set<std::string> run = ResultStore::open(results).noted_matrices();
   std::vector<const ResultCell*> present;
   for (const JudgedCell& judged : cells) present.push_back(&judged.cell);
-  return find_planned_gaps(readable_matrices(lab.matrices, lab.cullers), run, present, lab.cullers);
+  std::vector<Matrix> matrices = readable_matrices(lab.matrices, lab.cullers);
+  for (Matrix& matrix : matrices) leave_out_unfetched(matrix, lab.data);
+  return find_planned_gaps(matrices, run, present, lab.cullers);
 }
 
 }  // namespace

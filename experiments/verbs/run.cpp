@@ -17,15 +17,23 @@
 namespace vislab {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr const char* all_sweeps = "stress";
 constexpr const char* all_size_sweeps = "model_size";
+
+/// A matrix of the lab, and which blocks of a call are its.
+struct PlannedMatrix {
+  std::string name;
+  std::size_t first_block = 0, end_block = 0;
+};
 
 /// What a call asks for.
 struct Work {
   std::vector<Block> blocks;
   std::vector<Sweep> sweeps;
   std::vector<std::size_t> first_block;  // of each sweep
-  std::vector<std::string> matrices;     // of the lab
+  std::vector<PlannedMatrix> matrices;
 };
 
 void tell_absent(const std::string& name, const std::vector<std::string>& absent) {
@@ -86,8 +94,26 @@ void add_named(Work& work, const std::string& name, const Lab& lab,
     std::cerr << "vislab: " << name << " goes on without scene " << left_out.scene << ": package "
               << left_out.package << " has not been fetched; `./lab setup` fetches it\n";
   }
+  const std::size_t first = work.blocks.size();
   work.blocks.insert(work.blocks.end(), matrix.blocks.begin(), matrix.blocks.end());
-  if (is_in(lab.matrices)) work.matrices.push_back(name);
+  const fs::path file = is_in(lab.matrices) ? lab.matrices / (name + ".toml") : fs::path(name);
+  std::error_code code;
+  if (fs::equivalent(fs::absolute(file).parent_path(), lab.matrices, code)) {
+    work.matrices.push_back({file.stem().string(), first, work.blocks.size()});
+  }
+}
+
+/// A matrix of which nothing was measured, now or before, was not run.
+void note_matrices(const Work& work, const RunOutcome& outcome, const ResultStore& store) {
+  for (const PlannedMatrix& matrix : work.matrices) {
+    bool is_any_there = false;
+    for (std::size_t block = matrix.first_block; block < matrix.end_block; ++block) {
+      is_any_there = is_any_there ||
+                     std::ranges::any_of(outcome.cells_of_block.at(block),
+                                         [&](const std::string& id) { return store.holds(id); });
+    }
+    if (is_any_there) store.note_matrix(matrix.name);
+  }
 }
 
 Work work_of(const Lab& lab, const RunCall& call) {
@@ -301,10 +327,8 @@ int run(const Lab& lab, const RunCall& call) {
               << "; waiting for it to end\n";
   });
   for (const Sweep& sweep : work.sweeps) write_sweep_files(sweep);
-  if (call.filter.empty()) {
-    for (const std::string& matrix : work.matrices) store.note_matrix(matrix);
-  }
   const RunOutcome outcome = run_blocks(work.blocks, options, lab.cullers);
+  if (call.filter.empty()) note_matrices(work, outcome, store);
   for (std::size_t i = 0; i < work.sweeps.size(); ++i) {
     note_sweep_cells(work.sweeps[i], outcome, work.first_block[i], call.results);
   }

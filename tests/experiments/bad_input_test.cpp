@@ -3,9 +3,8 @@
 
 #include <algorithm>
 
-#include "tests/temporary_folder.h"
-
 #include "tests/experiments/program.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {

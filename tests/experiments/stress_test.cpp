@@ -7,9 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "tests/temporary_folder.h"
-
 #include "tests/experiments/program.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {

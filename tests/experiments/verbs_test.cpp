@@ -4,11 +4,12 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
-#include "tests/temporary_folder.h"
-
+#include "experiments/results/store.h"
 #include "tests/experiments/program.h"
+#include "tests/temporary_folder.h"
 
 namespace vislab {
 namespace {
@@ -93,6 +94,7 @@ TEST(Verbs, PlanNamesEveryCellOfAMatrixAndWhichAreDone) {
   ASSERT_EQ(run_vislab({"run", "smoke", "--shard", "1/5", "--results", results}).exit_code, 0);
   EXPECT_EQ(statuses(), (std::map<std::pair<bool, std::string>, int>{{{true, "done"}, first},
                                                                      {{false, "open"}, others}}));
+  EXPECT_EQ(ResultStore::open(results).noted_matrices(), std::set<std::string>{"smoke"});
 }
 
 TEST(Verbs, CheckHoldsACullerToItsContract) {

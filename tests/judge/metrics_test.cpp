@@ -179,6 +179,7 @@ TEST(JudgeSet, excuses_a_pixel_that_a_painted_image_gives_to_an_edge_beside_it) 
   EXPECT_EQ(judged.judge(kept).false_px, 61U * height);
   EXPECT_EQ(verdict(1).false_px, 60U * height) << "only those beside the edge";
   EXPECT_EQ(verdict(none_id).false_px, 61U * height);
+  EXPECT_EQ(verdict(0).false_px, 61U * height) << "the owner was left out itself";
 }
 
 TEST(JudgeSet, counts_an_object_false_only_if_it_loses_all_its_undisputed_samples) {

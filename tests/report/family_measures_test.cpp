@@ -42,10 +42,16 @@ TEST(FamilyMeasures, OfAFamilyTheMethodThatAddsMostIsTheBest) {
   EXPECT_EQ(on.best->against(), "none");
 }
 
-TEST(FamilyMeasures, AChainWhoseRestWasNotMeasuredIsLeftOut) {
+TEST(FamilyMeasures, AChainWhoseRestWasNotMeasuredIsNeverTheBestButItsErrorsCount) {
   BlockSummary block = fabricated_block("made_up");
   block.cells.push_back(fabricated_cell("frustum.bvh > detail.small", 0.4, 0, 4.0));
-  EXPECT_TRUE(family_on(block, "detail", nullptr).methods.empty());
+  block.cells.push_back(fabricated_cell("frustum.bvh > detail.large", 0.3, 12, 4.0));
+  const FamilyOn on = family_on(block, "detail", nullptr);
+  EXPECT_EQ(on.methods.size(), 2U);
+  EXPECT_EQ(on.best, nullptr);
+  EXPECT_EQ(on.erring, 1U);
+  ASSERT_NE(on.worst, nullptr);
+  EXPECT_EQ(on.worst->culler, "frustum.bvh > detail.large");
 }
 
 TEST(FamilyMeasures, WhatGoesFromCellToCellIsLeftOutWhereTheViewerIsInNone) {

@@ -1,4 +1,5 @@
 #include "common/scene/quake_world.h"
+#include "common/scene/error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// The scenes, paths and lights that the repository describes.
+// The scenes and paths that the repository describes.
 #pragma once
 
 #include "common/scene/library.h"

@@ -422,7 +422,7 @@ class Building {
 
   /// Between the corners, where the boxes are.
   void add_small_things() {
-    constexpr double corner = 0.9, aside = 0.15;
+    constexpr double widest_corner = 0.9, aside = 0.15;
     const auto mesh = static_cast<MeshId>(scene_.meshes.size());
     scene_.meshes.push_back(cube_mesh());
     for (std::uint32_t room = 0; room < p_.storeys * p_.rows * p_.columns; ++room) {
@@ -431,6 +431,7 @@ class Building {
       const std::uint32_t storey = room / p_.columns / p_.rows;
       const Span x = columns_[column];
       const Span z = rows_[row];
+      const double corner = std::min(widest_corner, 0.5 * (x.high - x.low));
       for (std::uint32_t i = 0; i < p_.small_things_per_room; ++i) {
         const glm::dvec3 half(things_.uniform(0.01, 0.03), things_.uniform(0.01, 0.03),
                               things_.uniform(0.01, 0.03));
