@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "experiments/analysis/break_points.h"
 #include "experiments/analysis/chains.h"
 #include "report/format.h"
 #include "report/main_chart.h"
@@ -86,12 +87,6 @@ std::vector<Failure> failures_of(const std::vector<const BlockSummary*>& blocks)
   return failures;
 }
 
-bool is_promise_broken(const CellSummary& cell) {
-  const bool is_promise =
-      cell.guarantee == Guarantee::conservative || cell.guarantee == Guarantee::image_exact;
-  return !cell.anchor && cell.judged && is_promise && !is_free_of_errors(cell);
-}
-
 void add_failures(const ReportInput& input, Fields& fields) {
   const std::vector<const BlockSummary*> blocks = all_blocks(input);
   std::size_t judged = 0;
@@ -99,7 +94,7 @@ void add_failures(const ReportInput& input, Fields& fields) {
   for (const BlockSummary* block : blocks) {
     for (const CellSummary& cell : block->cells) {
       judged += cell.judged ? 1 : 0;
-      if (is_promise_broken(cell)) broken.insert(cell.culler);
+      if (!cell.anchor && breaks_its_promise(cell)) broken.insert(cell.culler);
     }
   }
   fields.values["judged_cells"] = format_count(judged);

@@ -29,9 +29,7 @@ SweepPoint point_of(const CellSummary* cell, const SweepLimit& limit) {
   point.state = State::measured;
   point.figure = cell->metric(limit.metric);
   point.guarantee = cell->guarantee;
-  point.false_px = cell->false_px;
-  point.false_jittered = cell->false_jittered;
-  point.wrong_px = cell->paints ? cell->surface_px : cell->drawn ? cell->image_px : cell->false_px;
+  point.breaks_promise = breaks_its_promise(*cell);
   return point;
 }
 
@@ -45,12 +43,6 @@ double worst_allowed(const SweepLimit& limit, Guarantee guarantee, double first,
     return approximate_share * static_cast<double>(pixels);
   }
   return 0.0;
-}
-
-bool breaks_a_promise(const SweepPoint& point) {
-  if (point.state != State::measured) return false;
-  if (point.guarantee == Guarantee::conservative) return point.false_px + point.false_jittered > 0;
-  return point.guarantee == Guarantee::image_exact && point.wrong_px > 0;
 }
 
 /// What to say of a measured cell without the counter that the sweep asks for.
@@ -113,9 +105,7 @@ SweepVerdict verdict_on(const Sweep& sweep, const SweepMethod& method, const Cel
         verdict.is_complete = false;
       }
     }
-    if (!verdict.broken_promise && breaks_a_promise(point)) {
-      verdict.broken_promise = i;
-    }
+    if (!verdict.broken_promise && point.breaks_promise) verdict.broken_promise = i;
     if (!measured) continue;
     if (!verdict.worst || is_worse(point.figure, points[*verdict.worst].figure)) verdict.worst = i;
     if (!verdict.best || is_worse(points[*verdict.best].figure, point.figure)) verdict.best = i;
@@ -126,6 +116,13 @@ SweepVerdict verdict_on(const Sweep& sweep, const SweepMethod& method, const Cel
 }
 
 }  // namespace
+
+bool breaks_its_promise(const CellSummary& cell) {
+  if (!cell.judged) return false;
+  if (cell.guarantee == Guarantee::conservative) return !is_free_of_errors(cell);
+  if (cell.guarantee != Guarantee::image_exact) return false;
+  return (cell.drawn && !cell.paints ? cell.image_px : cell.wrong_px()) > 0;
+}
 
 bool SweepVerdict::was_measured() const {
   return std::ranges::any_of(points,

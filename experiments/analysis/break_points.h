@@ -20,11 +20,14 @@ struct SweepPoint {
   std::string reason;   // of a failure
   double figure = 0.0;  // of the sweep's metric or counter; NaN if not measured
   Guarantee guarantee = Guarantee::conservative;
-  std::uint64_t false_px = 0, false_jittered = 0;
-  /// Pixels that an image_exact method got wrong: of the image that it paints; else of the device's
-  /// image; else (nothing was drawn) those that it lost of truth.
-  std::uint64_t wrong_px = 0;
+  bool breaks_promise = false;
 };
+
+/// Did a judged method not hold what it promises? A conservative one must not lose an undisputed
+/// pixel, jittered sample or object, nor something that is seen from a cell; an image_exact one
+/// must not get a pixel wrong: of the image that it paints; else of the device's image; else
+/// (nothing was drawn) of truth.
+bool breaks_its_promise(const CellSummary& cell);
 
 /// What a sweep says of one of its methods.
 struct SweepVerdict {
@@ -44,8 +47,7 @@ struct SweepVerdict {
   Agreement agreement = Agreement::nothing_expected;
   /// "METHOD has no counter 'x'; it has a, b", or empty.
   std::string missing_counter;
-  /// The first value of the dial at which a method broke what it promises there: a conservative one
-  /// lost an undisputed pixel or a jittered sample, an image_exact one has a wrong pixel.
+  /// The first value of the dial at which breaks_its_promise() says so.
   std::optional<std::size_t> broken_promise;
 
   bool was_measured() const;

@@ -302,6 +302,18 @@ TEST_F(SourceSections, ABrokenPromiseStandsOnTheSheet) {
   EXPECT_EQ(fields.lists["failures"][0].values.at("method"), "`frustum.bvh`");
 }
 
+TEST_F(SourceSections, APromiseOfTheImageIsHeldToTheImage) {
+  CellSummary cell = registered_cell(registry_, "depth.hzb", 0.3, 5, 1.0);
+  ASSERT_EQ(cell.guarantee, Guarantee::image_exact);
+  cell.drawn = true;
+  cell.image_px = 0;
+  EXPECT_FALSE(breaks_its_promise(cell)) << "rays differ, the device's image does not";
+  cell.image_px = 1;
+  EXPECT_TRUE(breaks_its_promise(cell));
+  cell.drawn = false;
+  EXPECT_TRUE(breaks_its_promise(cell)) << "without an image rays decide";
+}
+
 TEST_F(SourceSections, ManyScenesAreCutToThoseWithMostTrianglesAndSaidSo) {
   for (int i = 0; i < 12; ++i) {
     BlockSummary block = input_.blocks[0];
