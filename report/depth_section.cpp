@@ -1,9 +1,10 @@
 #include "report/depth_section.h"
 
-#include <algorithm>
+#include <optional>
 
 #include "common/scene/error.h"
 #include "report/format.h"
+#include "report/parallel.h"
 #include "report/scene_section.h"
 
 namespace vislab {
@@ -31,20 +32,24 @@ void add_depth_fields(const ReportInput& input, const std::vector<const BlockSum
                       const std::filesystem::path& folder, Fields& fields) {
   auto& rows = fields.lists["depths"];
   auto& pictures = fields.lists["depth_pictures"];
+  const std::vector<ShownScene> scenes = shown_scenes(input.blocks, left_out);
+  std::vector<std::optional<DepthComplexityTable>> tables(scenes.size());
+  for_each_index(input.depth_complexity ? scenes.size() : 0, [&](std::size_t i) {
+    try {
+      tables[i] = input.depth_complexity(input.blocks[scenes[i].block], {});
+    } catch (const InputError&) {
+      // The scene's own section says why it cannot be had.
+    }
+  });
   const BlockSummary* deepest = nullptr;
   double greatest = 0.0;
-  for (const ShownScene& scene : shown_scenes(input.blocks, left_out)) {
-    if (!input.depth_complexity) break;
-    const BlockSummary& block = input.blocks[scene.block];
-    try {
-      const DepthComplexityTable table = input.depth_complexity(block, {});
-      rows.push_back(row_of(block, table));
-      if (table[0].mean > greatest) {
-        greatest = table[0].mean;
-        deepest = &block;
-      }
-    } catch (const InputError&) {
-      continue;  // the scene's own section says why it cannot be had
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    if (!tables[i]) continue;
+    const BlockSummary& block = input.blocks[scenes[i].block];
+    rows.push_back(row_of(block, *tables[i]));
+    if ((*tables[i])[0].mean > greatest) {
+      greatest = (*tables[i])[0].mean;
+      deepest = &block;
     }
   }
   if (deepest != nullptr) {

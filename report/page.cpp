@@ -2,7 +2,9 @@
 
 #include <chrono>
 #include <fstream>
+#include <functional>
 #include <iterator>
+#include <optional>
 
 #include "common/scene/error.h"
 #include "report/pdf_pages.h"
@@ -51,6 +53,49 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
+struct PictureSize {
+  std::string width, height;  // pixels
+};
+
+/// Of a PNG by its first chunk, of an SVG by its outermost element; none if it has none.
+std::optional<PictureSize> picture_size(const std::string& bytes, const std::string& name) {
+  if (name.ends_with(".svg")) {
+    const auto attribute = [&](const std::string& start) {
+      const std::size_t at = bytes.find(start, bytes.find("<svg"));
+      if (at == std::string::npos) return std::string();
+      const std::size_t from = at + start.size();
+      return bytes.substr(from, bytes.find('"', from) - from);
+    };
+    const PictureSize size{attribute(" width=\""), attribute(" height=\"")};
+    return size.width.empty() || size.height.empty() ? std::nullopt : std::optional(size);
+  }
+  constexpr std::size_t first_chunk = 16;
+  if (bytes.size() < first_chunk + 8) return std::nullopt;
+  const auto number = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = at; i < at + 4; ++i) {
+      value = value << 8U | static_cast<unsigned char>(bytes[i]);
+    }
+    return std::to_string(value);
+  };
+  return PictureSize{number(first_chunk), number(first_chunk + 4)};
+}
+
+/// The page with other sources of its pictures.
+std::string with_sources(const std::string& html,
+                         const std::function<std::string(const std::string& name)>& source_of) {
+  constexpr std::string_view image = "<img src=\"";
+  std::string result;
+  std::size_t at = 0;
+  for (std::size_t next = 0; (next = html.find(image, at)) != std::string::npos;) {
+    const std::size_t from = next + image.size();
+    const std::size_t to = html.find('"', from);
+    result += html.substr(at, from - at) + source_of(html.substr(from, to - from));
+    at = to;
+  }
+  return result + html.substr(at);
+}
+
 std::string write_page(const fs::path& templates, const fs::path& work) {
   const fs::path absolute = fs::absolute(templates);
   run_program(pandoc,
@@ -69,16 +114,21 @@ std::string write_page(const fs::path& templates, const fs::path& work) {
                // Tables keep the widths that their content asks for.
                "--columns=10000", "--output=pandoc.html"},
               work, time_limit);
-  return with_breaks_in_tables(with_pictures(read_file(work / "pandoc.html"), work));
+  return with_breaks_in_tables(read_file(work / "pandoc.html"));
 }
 
-void print_page(const fs::path& work) {
+enum class Printed { draft, final };
+
+/// A draft only tells which page is where: it has no outline and nothing for screen readers, which
+/// take half of the time.
+void print_page(const fs::path& work, Printed printed) {
   run_program(
       chromium,
       {"--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
        "--disable-extensions", "--disable-background-networking",
        "--user-data-dir=" + (work / "browser").string(), "--no-pdf-header-footer",
-       "--generate-pdf-document-outline", "--print-to-pdf=" + (work / "report.pdf").string(),
+       printed == Printed::draft ? "--disable-pdf-tagging" : "--generate-pdf-document-outline",
+       "--print-to-pdf=" + (work / "report.pdf").string(),
        "file://" + (work / "print.html").string()},
       work, time_limit);
   if (!fs::exists(work / "report.pdf")) {
@@ -132,32 +182,32 @@ std::string with_breaks_in_tables(const std::string& html) {
 }
 
 std::string with_pictures(const std::string& html, const fs::path& folder) {
-  constexpr std::string_view image = "<img src=\"";
-  std::string result;
-  std::size_t at = 0;
-  for (std::size_t next = 0; (next = html.find(image, at)) != std::string::npos;) {
-    const std::size_t from = next + image.size();
-    const std::size_t to = html.find('"', from);
-    const std::string name = html.substr(from, to - from);
-    result += html.substr(at, from - at);
-    result += name.ends_with(".svg") ? "data:image/svg+xml;base64," : "data:image/png;base64,";
-    result += base64(read_file(folder / name));
-    at = to;
-  }
-  return result + html.substr(at);
+  return with_sources(html, [&](const std::string& name) {
+    const char* type = name.ends_with(".svg") ? "svg+xml" : "png";
+    return "data:image/" + std::string(type) + ";base64," + base64(read_file(folder / name));
+  });
+}
+
+std::string with_blank_pictures(const std::string& html, const fs::path& folder) {
+  return with_sources(html, [&](const std::string& name) {
+    const std::optional<PictureSize> size = picture_size(read_file(folder / name), name);
+    if (!size) return name;
+    return "data:image/svg+xml,<svg xmlns='http://www.w3.org/2000/svg' width='" + size->width +
+           "' height='" + size->height + "'/>";
+  });
 }
 
 void make_page(const fs::path& templates, const fs::path& work) {
   const std::string html = write_page(templates, work);
   const std::string unnumbered = with_page_numbers(html, {});
-  write_file(work / "index.html", unnumbered);
-  // Numbers have their place before they are known, so that they move nothing.
-  write_file(work / "print.html", unnumbered);
-  print_page(work);
+  write_file(work / "index.html", with_pictures(unnumbered, work));
+  // Numbers have their place before they are known, and pictures before they are painted, so that
+  // they move nothing.
+  write_file(work / "print.html", with_blank_pictures(unnumbered, work));
+  print_page(work, Printed::draft);
   const std::map<std::string, int> pages = named_pages(read_file(work / "report.pdf"));
-  if (pages.empty()) return;
   write_file(work / "print.html", with_page_numbers(html, pages));
-  print_page(work);
+  print_page(work, Printed::final);
 }
 
 }  // namespace vislab

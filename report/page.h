@@ -25,4 +25,8 @@ std::string with_breaks_in_tables(const std::string& html);
 /// InputError if one is missing.
 std::string with_pictures(const std::string& html, const std::filesystem::path& folder);
 
+/// The page with blank pictures of the same sizes in place of its own: it breaks into the same
+/// pages. A picture without a size stays. Throws InputError if one is missing.
+std::string with_blank_pictures(const std::string& html, const std::filesystem::path& folder);
+
 }  // namespace vislab

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "algorithms/occlusion/persistence.h"
 #include "common/scene/error.h"
 #include "report/format.h"
+#include "report/parallel.h"
 
 namespace vislab {
 namespace {
@@ -194,20 +196,24 @@ std::vector<PersistenceRow> persistence_rows(const ReportInput& input,
     if (blocks[place].empty()) places.push_back(place);
     blocks[place].push_back(&block);
   }
-  for (const Place& place : places) {
-    std::vector<const BlockSummary*>& measured = blocks[place];
+  std::vector<std::optional<PersistenceRow>> found(places.size());
+  for_each_index(places.size(), [&](std::size_t i) {
+    std::vector<const BlockSummary*> measured = blocks.at(places[i]);
     std::ranges::stable_sort(measured, std::ranges::greater(), [](const BlockSummary* block) {
       return std::pair(block->frames, block->viewport.width * block->viewport.height);
     });
     for (const BlockSummary* block : measured) {
       try {
-        rows.push_back(
-            {block->scene, block->path, block->viewport, block->frames, input.persistence(*block)});
+        found[i] = {block->scene, block->path, block->viewport, block->frames,
+                    input.persistence(*block)};
         break;
       } catch (const InputError&) {
         continue;  // the scene's own section says why it cannot be had
       }
     }
+  });
+  for (std::optional<PersistenceRow>& row : found) {
+    if (row) rows.push_back(std::move(*row));
   }
   return rows;
 }

@@ -9,6 +9,7 @@
 #include <future>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <sstream>
 
 #include "common/scene/error.h"
@@ -88,25 +89,35 @@ void write_text(const fs::path& file, const std::string& text) {
 
 using DrawPicture = decltype(ReportInput::picture);
 
-/// Several parts may show the same picture: it is drawn once, and copied.
+/// Several parts may show the same picture: it is drawn once, and copied. Threads may ask at the
+/// same time.
 DrawPicture drawn_once(const DrawPicture& draw) {
   struct Drawn {
+    std::once_flag once;
     std::string caption, error;
     fs::path file;
   };
+  struct All {
+    std::mutex mutex;  // of the map, not of what it holds
+    std::map<std::string, Drawn> drawn;
+  };
   if (!draw) return draw;
-  const auto all = std::make_shared<std::map<std::string, Drawn>>();
+  const auto all = std::make_shared<All>();
   return [all, draw](const BlockSummary& block, const CellSummary& cell, const fs::path& file) {
-    const auto [found, is_new] = all->try_emplace(block.scene_hash + block.path_hash + cell.id);
-    Drawn& drawn = found->second;
-    if (is_new) {
+    Drawn* found = nullptr;
+    {
+      const std::scoped_lock lock(all->mutex);
+      found = &all->drawn[block.scene_hash + block.path_hash + cell.id];
+    }
+    Drawn& drawn = *found;
+    std::call_once(drawn.once, [&] {
       drawn.file = file;
       try {
         drawn.caption = draw(block, cell, file);
       } catch (const InputError& error) {
         drawn.error = error.what();
       }
-    }
+    });
     if (!drawn.error.empty()) throw InputError(drawn.error);
     if (drawn.file != file) fs::copy_file(drawn.file, file, fs::copy_options::overwrite_existing);
     return drawn.caption;

@@ -26,6 +26,7 @@ struct MissingCell {
   std::string reason;
 };
 
+/// What its functions draw and measure is asked for by several threads at once.
 struct ReportInput {
   std::vector<BlockSummary> blocks;
   /// Blocks of stress sweeps, which stand in the sections on break points and wrong methods only.

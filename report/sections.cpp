@@ -16,6 +16,7 @@
 #include "report/finding.h"
 #include "report/format.h"
 #include "report/method_fields.h"
+#include "report/parallel.h"
 #include "report/scene_section.h"
 #include "report/sweep_section.h"
 
@@ -203,9 +204,10 @@ Fields report_fields(const ReportInput& input, const std::string& verdict_templa
   auto& floors = fields.lists["floors"];
   auto& noises = fields.lists["noises"];
   const std::vector<ShownScene> shown = shown_scenes(input.blocks, in_diagrams);
-  for (const ShownScene& scene : shown) {
-    scenes.push_back(scene_fields(input, scene, fits, verdict_template, folder));
-  }
+  scenes.resize(shown.size());
+  for_each_index(shown.size(), [&](std::size_t i) {
+    scenes[i] = scene_fields(input, shown[i], fits, verdict_template, folder);
+  });
   // Those with most methods, in the order of the scenes.
   std::vector<std::size_t> order(shown.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -1,5 +1,6 @@
 #include "experiments/results/store.h"
 
+#include <tbb/parallel_for.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -239,18 +240,30 @@ std::vector<ResultCell> ResultStore::load_all(LeftOut* left_out) const {
                      "; name another with --results");
   }
   std::ranges::sort(files);
-  std::vector<ResultCell> cells;
-  for (const fs::path& file : files) {
-    const std::string text = read_file(file);
+  struct Read {
+    std::optional<ResultCell> cell;
+    std::optional<DamagedCell> damage;
+    int format = 0;
+  };
+  std::vector<Read> all(files.size());
+  tbb::parallel_for(std::size_t{0}, files.size(), [&](std::size_t i) {
+    const std::string text = read_file(files[i]);
     try {
-      if (auto cell = cell_of(text, file)) {
-        cells.push_back(std::move(*cell));
-      } else if (left_out != nullptr) {
-        ++left_out->other_formats[cell_format(text)];
-      }
+      all[i].cell = cell_of(text, files[i]);
+      if (!all[i].cell) all[i].format = cell_format(text);
     } catch (const DamagedCell& error) {
-      if (left_out == nullptr) throw;
-      left_out->damaged.push_back(error);
+      all[i].damage = error;
+    }
+  });
+  std::vector<ResultCell> cells;
+  for (Read& read : all) {
+    if (read.cell) {
+      cells.push_back(std::move(*read.cell));
+    } else if (read.damage) {
+      if (left_out == nullptr) throw DamagedCell(*read.damage);
+      left_out->damaged.push_back(*read.damage);
+    } else if (left_out != nullptr) {
+      ++left_out->other_formats[read.format];
     }
   }
   return cells;

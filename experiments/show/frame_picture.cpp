@@ -82,7 +82,7 @@ std::string StoredPictures::write(const BlockSummary& block, const CellSummary& 
   const std::optional<CellVerdicts> verdicts = store.load_verdicts(*stored, judge_source_hash());
   if (!verdicts) throw InputError("cell " + cell.id + " has not been judged");
 
-  const StoredScene& loaded = scenes_->of(block, cell.id);
+  const StoredScene loaded = scenes_->of(block, cell.id);
   std::size_t best = 0;
   for (std::size_t i = 1; i < verdicts->frames.size(); ++i) {
     const Verdict& a = verdicts->frames[i];

@@ -37,7 +37,7 @@ double stored_hidden_share(const std::filesystem::path& results, StoredScenes& s
   const ResultStore store = ResultStore::open(results);
   const std::optional<ResultCell> cell = store.load_cell(id);
   if (!cell) throw InputError("cell " + id + " is missing");
-  const StoredScene& stored = scenes.of(block, id);
+  const StoredScene stored = scenes.of(block, id);
   const TruthStore truths(store.truth_folder());
   HiddenTriangles sum;
   SceneState state(stored.scene);

@@ -180,7 +180,7 @@ KindsPicture write_stored_kinds(const std::filesystem::path& results, const Regi
                                 const std::filesystem::path& file) {
   if (block.cells.empty()) throw InputError("block " + block.scene + " has no cell");
   const std::string& id = block.cells.front().id;
-  const StoredScene& stored = scenes.of(block, id);
+  const StoredScene stored = scenes.of(block, id);
   const ResultStore store = ResultStore::open(results);
   const std::optional<ResultCell> cell = store.load_cell(id);
   if (!cell) throw InputError("cell " + id + " is missing");

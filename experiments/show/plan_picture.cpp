@@ -95,7 +95,7 @@ std::string write_stored_plan(const std::filesystem::path& results, const Regist
   const std::optional<CellVerdicts> verdicts = store.load_verdicts(*stored, judge_source_hash());
   if (!verdicts) throw InputError("cell " + cell.id + " has not been judged");
   const std::size_t best = most_telling(verdicts->frames);
-  const StoredScene& loaded = scenes.of(block, cell.id);
+  const StoredScene loaded = scenes.of(block, cell.id);
   const std::optional<FrameTruth> truth =
       TruthStore(store.truth_folder()).load(stored->frames[best].truth);
   if (!truth) {

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
+#include <map>
+#include <mutex>
 #include <string>
-#include <vector>
 
 #include "common/scene/library.h"
 #include "experiments/analysis/summary.h"
@@ -12,31 +12,31 @@
 namespace vislab {
 
 struct StoredScene {
-  Scene scene;
+  const Scene& scene;  // of StoredScenes
   Path path;
 };
 
-/// Loads what the cells of blocks were measured on, and keeps what was asked for last, because
-/// many pictures are of the same scenes: up to a few million triangles together.
+/// Loads what the cells of blocks were measured on. Scenes are kept, because many pictures are of
+/// the same ones, and their objects share meshes: a few hundred megabytes for all of the lab's.
+/// Threads may ask for scenes at the same time.
 class StoredScenes {
  public:
   StoredScenes(std::filesystem::path results, DataFolders folders);
 
-  /// Valid until the next call. Throws InputError if the cell is missing, or if scene or path are
-  /// no longer those that were measured.
-  const StoredScene& of(const BlockSummary& block, const std::string& cell_id);
+  /// Valid as long as this object. Throws InputError if the cell is missing, or if scene or path
+  /// are no longer those that were measured.
+  StoredScene of(const BlockSummary& block, const std::string& cell_id);
 
  private:
   struct Kept {
-    StoredScene stored;
-    std::string path_hash, default_path;
+    std::once_flag once;
+    LoadedScene loaded;
   };
-
-  void load_path_of(Kept& kept, const BlockSummary& block, const std::string& source) const;
 
   std::filesystem::path results_;
   DataFolders folders_;
-  std::vector<std::unique_ptr<Kept>> kept_;  // the last that was asked for in front
+  std::mutex mutex_;                  // of the map, not of what it holds
+  std::map<std::string, Kept> kept_;  // by the content hash of the scene that was measured
 };
 
 }  // namespace vislab

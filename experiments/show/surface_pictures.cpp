@@ -48,7 +48,7 @@ std::string write_stored_surfaces(const std::filesystem::path& results, StoredSc
   const std::size_t best =
       *most > 0 ? static_cast<std::size_t>(most - wrong.begin()) : wrong.size() / 2;
   const std::string id = cells.front().key.id();
-  const StoredScene& stored = scenes.of(block, id);
+  const StoredScene stored = scenes.of(block, id);
   const std::optional<FrameTruth> truth =
       TruthStore(store.truth_folder()).load(cells.front().frames[best].truth);
   if (!truth) {

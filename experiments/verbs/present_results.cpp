@@ -1,5 +1,7 @@
 #include "experiments/verbs/present_results.h"
 
+#include <tbb/parallel_for.h>
+
 #include <iostream>
 
 #include "common/scene/error.h"
@@ -32,9 +34,11 @@ std::vector<JudgedCell> present_cells(const std::filesystem::path& results, cons
       continue;  // a culler that no longer exists
     }
     if (chain_source_hash(cell.key.chain) != cell.key.sources) continue;
-    std::optional<CellVerdicts> verdicts = store.load_verdicts(cell, judge_source_hash());
-    present.push_back({std::move(cell), std::move(verdicts)});
+    present.push_back({std::move(cell), std::nullopt});
   }
+  tbb::parallel_for(std::size_t{0}, present.size(), [&](std::size_t i) {
+    present[i].verdicts = store.load_verdicts(present[i].cell, judge_source_hash());
+  });
   return present;
 }
 

@@ -27,7 +27,7 @@ namespace {
 DepthComplexityTable stored_depth_complexity(StoredScenes& scenes, const BlockSummary& block,
                                              const std::filesystem::path& file) {
   if (block.cells.empty()) throw InputError("block " + block.scene + " has no cell");
-  const StoredScene& stored = scenes.of(block, block.cells.front().id);
+  const StoredScene stored = scenes.of(block, block.cells.front().id);
   const auto third = static_cast<std::size_t>(block.frames) / 3;
   DepthComplexityTable table{};
   SceneState state(stored.scene);
@@ -47,7 +47,7 @@ PersistenceCounts stored_persistence(const std::filesystem::path& results, Store
                                      const BlockSummary& block) {
   if (block.cells.empty()) throw InputError("block " + block.scene + " has no cell");
   const std::string& id = block.cells.front().id;
-  const StoredScene& stored = scenes.of(block, id);
+  const StoredScene stored = scenes.of(block, id);
   const ResultStore store = ResultStore::open(results);
   const std::optional<ResultCell> cell = store.load_cell(id);
   if (!cell) throw InputError("cell " + id + " is missing");
@@ -85,7 +85,7 @@ std::vector<double> stored_frame_times(const std::filesystem::path& results,
 std::string stored_query_picture(const Lab& lab, StoredScenes& scenes, const BlockSummary& block,
                                  const std::vector<const CellSummary*>& cells, QueryPicture picture,
                                  const std::filesystem::path& file) {
-  const StoredScene& stored = scenes.of(block, block.cells.front().id);
+  const StoredScene stored = scenes.of(block, block.cells.front().id);
   DeviceSpec spec = parse_device(block.device);
   GpuModel model = block.device_models.empty() ? GpuModel{} : block.device_models.front();
   if (picture == QueryPicture::timeline && spec.kind != DeviceSpec::Kind::modelled) {

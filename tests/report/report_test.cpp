@@ -9,6 +9,7 @@
 #include <sstream>
 #include <vector>
 
+#include "common/render/png.h"
 #include "common/scene/error.h"
 #include "report/method_fields.h"
 #include "report/page.h"
@@ -28,6 +29,10 @@ const fs::path templates = fs::path(VISLAB_SOURCE_DIR) / "report";
 std::string read(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+Image black(int width, int height) {
+  return {width, height, std::vector<std::uint8_t>(3 * static_cast<std::size_t>(width * height))};
 }
 
 class Report : public testing::Test {
@@ -333,6 +338,47 @@ TEST_F(Report, ThePrintedContentsHavePageNumbersAndTheScreenHasNone) {
   EXPECT_LT(pages.at("the-error-floor"), pages.at("the-run"));
   EXPECT_TRUE(named_pages("%PDF-1.4 and nothing else").empty());
   EXPECT_TRUE(named_pages(read(folder_ / "report.pdf").substr(0, 10'000)).empty());
+}
+
+TEST_F(Report, ThePageNumbersOfTheContentsAreThoseThatWerePrinted) {
+  constexpr int chapters = 12;
+  std::string text;
+  for (int i = 0; i < chapters; ++i) {
+    const std::string n = std::to_string(i);
+    write_png(folder_ / ("picture-" + n + ".png"), black(640, 100 + 90 * i));
+    std::ofstream(folder_ / ("chart-" + n + ".svg"))
+        << "<svg width=\"480\" height=\"" << 640 - 40 * i
+        << "\" xmlns=\"http://www.w3.org/2000/svg\"></svg>";
+    text +=
+        "# Chapter " + n + "\n\n![One](picture-" + n + ".png)\n\n![Two](chart-" + n + ".svg)\n\n";
+  }
+  std::ofstream(folder_ / "report.md") << text;
+  std::ofstream(folder_ / "summary.md") << "In short.\n";
+  make_page(templates, folder_);
+  const std::map<std::string, int> pages = named_pages(read(folder_ / "report.pdf"));
+  EXPECT_GT(pages.at("chapter-11"), chapters / 2);
+  const std::string printed = read(folder_ / "print.html");
+  for (int i = 0; i < chapters; ++i) {
+    const std::string id = "chapter-" + std::to_string(i);
+    const std::size_t link = printed.find("<a href=\"#" + id + "\"", printed.find("<nav"));
+    const std::string number = "<span class=\"page\">" + std::to_string(pages.at(id)) + "</span>";
+    ASSERT_NE(link, std::string::npos);
+    const std::size_t open = printed.find('>', link) + 1;
+    EXPECT_EQ(printed.substr(open, number.size()), number);
+  }
+}
+
+TEST_F(Report, BlankPicturesHaveTheSizesOfTheirOwn) {
+  write_png(folder_ / "a.png", black(300, 70));
+  std::ofstream(folder_ / "b.svg")
+      << "<?xml version=\"1.0\"?>\n<svg \n width=\"68\" height=\"44\"\n>"
+         "<rect width=\"1\" height=\"2\"/></svg>";
+  std::ofstream(folder_ / "c.png") << "not quite a PNG";
+  const std::string blank = "data:image/svg+xml,<svg xmlns='http://www.w3.org/2000/svg' ";
+  EXPECT_EQ(with_blank_pictures(
+                "<img src=\"a.png\"><img src=\"b.svg\" alt=\"b\"><img src=\"c.png\">", folder_),
+            "<img src=\"" + blank + "width='300' height='70'/>\"><img src=\"" + blank +
+                "width='68' height='44'/>\" alt=\"b\"><img src=\"c.png\">");
 }
 
 TEST_F(Report, CodeInTablesMayBreakAfterTheSignsThatJoinNames) {
