@@ -12,8 +12,15 @@ WindowTriangle window_triangle(const Frame& frame, const Scene& scene, TriangleI
                          triangle - scene.first_triangle(object))};
 }
 
-Disputes::Disputes(const Frame& frame, const Scene& scene)
-    : frame_(&frame), scene_(&scene), slots_a_(slot_count), slots_b_(slot_count) {}
+double depth_step_m(const Lens& lens, double depth_m) {
+  constexpr double step = 0x1p-24;
+  // The inverse of how fast the buffer's value grows, between the near plane (0) and the far (1).
+  if (lens.projection == Projection::orthographic) return step * (lens.far_m - lens.near_m);
+  return step * depth_m * depth_m * (1.0 / lens.near_m - 1.0 / lens.far_m);
+}
+
+Disputes::Disputes(const Frame& frame, const Scene& scene, DepthSteps steps)
+    : frame_(&frame), scene_(&scene), steps_(steps), slots_a_(slot_count), slots_b_(slot_count) {}
 
 const WindowTriangle& Disputes::find(TriangleId triangle, std::vector<Slot>& slots) {
   Slot& slot = slots[triangle % slot_count];
@@ -35,8 +42,10 @@ bool Disputes::operator()(const glm::dvec2& window_px, TriangleId a, TriangleId 
   if (!first.contains(window_px) || !second.contains(window_px)) return false;
   const double depth_a = first.depth(window_px);
   const double depth_b = second.depth(window_px);
-  return std::abs(depth_a - depth_b) <
-         disputed_relative_depth * std::max(std::abs(depth_a), std::abs(depth_b));
+  const double larger = std::max(std::abs(depth_a), std::abs(depth_b));
+  const double step =
+      steps_ == DepthSteps::device ? depth_step_m(frame_->camera.lens, larger) : 0.0;
+  return std::abs(depth_a - depth_b) < disputed_relative_depth * larger + step;
 }
 
 bool Disputes::excuse_pixel(const glm::dvec2& window_px, TriangleId full, TriangleId drawn,

@@ -15,13 +15,22 @@ inline constexpr double disputed_edge_px = 1.0 / 128.0;
 /// Two depths that differ by less than this, relative to the larger, may come in either order.
 inline constexpr double disputed_relative_depth = 1e-4;
 
+/// Whether one of the two answers comes from the device: its depth buffer of 32-bit floats has
+/// steps, which beyond 1,678 near distances exceed disputed_relative_depth.
+enum class DepthSteps { none, device };
+
+/// The step of the device's depth buffer at a planar depth, metres: of a value between 1/2 and 1,
+/// as all are beyond two near distances.
+double depth_step_m(const Lens& lens, double depth_m);
+
 /// Decides about samples of one frame, one after another; keeps the triangles seen last, because
 /// neighbouring samples ask for the same ones. Frame and scene outlive it.
 class Disputes {
  public:
-  Disputes(const Frame& frame, const Scene& scene);
+  Disputes(const Frame& frame, const Scene& scene, DepthSteps steps = DepthSteps::none);
 
-  /// As is_disputed().
+  /// As is_disputed(); depths also come in either order if they differ by less than the device's
+  /// depth buffer can tell, in addition.
   bool operator()(const glm::dvec2& window_px, TriangleId a, TriangleId b);
 
   /// Is a pixel excused that shows `drawn` where the full image shows `full` and a ray hits `seen`?
@@ -42,6 +51,7 @@ class Disputes {
 
   const Frame* frame_;
   const Scene* scene_;
+  DepthSteps steps_;
   std::vector<Slot> slots_a_, slots_b_;  // two, so that finding b does not overwrite a
 };
 

@@ -30,7 +30,7 @@ struct ImageJudge::Impl {
       throw std::logic_error("the image judge was not started on this frame");
     }
     std::array<std::uint64_t, 2> counts{};
-    Disputes disputes(frame, scene);
+    Disputes disputes(frame, scene, DepthSteps::device);
     const auto width = static_cast<std::size_t>(frame.viewport.width);
     for (std::size_t i = 0; i < full.size(); ++i) {
       if (full[i] == ids[i]) continue;
@@ -54,6 +54,8 @@ void ImageJudge::start(const Frame& frame, const FrameTruth& truth) {
   }
   impl_->full = impl_->draw(frame, {});
 }
+
+std::span<const TriangleId> ImageJudge::full_image() const { return impl_->full; }
 
 ImageVerdict ImageJudge::judge(const Frame& frame, const VisibleSet& kept,
                                std::span<const ObjectId> one_sided) {

@@ -23,11 +23,15 @@ class ImageJudge {
   /// which outlives the calls of judge() and error_floor(). Once a frame, before them.
   void start(const Frame& frame, const FrameTruth& truth);
 
+  /// Who owns each pixel of the full image, row by row from below; none_id for the background.
+  /// Valid until the next start().
+  std::span<const TriangleId> full_image() const;
+
   /// Differences between the image of `kept` and the full image. The device leaves out the backs of
   /// `one_sided` objects (RenderDevice::one_sided), as it did for the culler. A differing pixel is
   /// excused if it is disputed between its two triangles; or, where the full image itself differs
   /// from truth, if truth's triangle is disputed with either of them: at its edge the rasteriser
-  /// may see what lies behind it.
+  /// may see what lies behind it. Here and below the device's depth buffer counts (DepthSteps).
   ImageVerdict judge(const Frame& frame, const VisibleSet& kept,
                      std::span<const ObjectId> one_sided = {});
 

@@ -67,7 +67,7 @@ void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene
     const ObjectVisibility visibility = object_visibility(scene, seen);
     const CullableTriangles cullable(frame, scene);
     std::map<std::string, VisibleSet> sets;
-    std::map<std::tuple<std::string, std::string, Granularity>, Verdict> verdicts;
+    std::map<std::tuple<std::string, std::string, bool, Granularity>, Verdict> verdicts;
     std::map<std::string, ImageVerdict> images;  // by the sets that were drawn, and one-sided
     std::map<std::string, SurfaceVerdict> surfaces;
     for (Pending& entry : pending) {
@@ -76,10 +76,14 @@ void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene
       if (!sets.contains(hash)) sets.emplace(hash, store.load_set(hash));
       const VisibleSet& set = sets.at(hash);
       const std::string& surface = entry.cell->frames[index].surface;
-      const std::vector<TriangleId> owners =
+      const std::vector<TriangleId> painted =
           surface.empty() ? std::vector<TriangleId>() : store.load_surface(surface);
-      const std::tuple key(hash, surface, granularity);
+      // What a method promises of the device's image may lie there as the device has it.
+      const bool is_by_image = image && entry.cell->guarantee == Guarantee::image_exact;
+      const std::tuple key(hash, surface, is_by_image, granularity);
       if (!verdicts.contains(key)) {
+        const std::span<const TriangleId> owners =
+            painted.empty() && is_by_image ? image->full_image() : painted;
         verdicts.emplace(key, judge_set(frame, seen, set, granularity, caster, owners));
       }
       entry.verdicts.frames.push_back(verdicts.at(key));
@@ -96,7 +100,7 @@ void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene
       }
       if (!surface.empty()) {
         if (!surfaces.contains(surface)) {
-          surfaces.emplace(surface, judge_surface(frame, scene, seen, owners));
+          surfaces.emplace(surface, judge_surface(frame, scene, seen, painted));
         }
         entry.verdicts.surfaces.push_back(surfaces.at(surface));
       }

@@ -102,6 +102,26 @@ TEST(Disputed, is_a_sample_where_two_triangles_have_the_same_depth) {
       << "only one of them is there";
 }
 
+TEST(Disputed, with_a_device_is_what_its_depth_buffer_cannot_tell) {
+  // At 4,000 near distances a step is 0.095 m, and 1e-4 of the depth 0.04 m.
+  Scene scene;
+  const std::array<glm::vec2, 3> large = {{{5, 5}, {95, 5}, {5, 95}}};
+  for (const float depth : {400.0F, 400.02F, 400.12F, 400.15F}) {
+    add_window_triangle(scene, large, {depth, depth, depth});
+  }
+  Stage stage(std::move(scene), square_camera(0.1, 1000.0), viewport);
+  EXPECT_NEAR(depth_step_m(stage.frame.camera.lens, 400.0), 0.0954, 1e-4);
+  const glm::dvec2 pixel(25.5, 25.5);
+  Disputes rays(stage.frame, stage.scene);
+  Disputes device(stage.frame, stage.scene, DepthSteps::device);
+  EXPECT_TRUE(rays(pixel, 0, 1));
+  EXPECT_FALSE(rays(pixel, 0, 2));
+  EXPECT_TRUE(device(pixel, 0, 2));
+  EXPECT_FALSE(device(pixel, 0, 3));
+  const Lens orthographic = orthographic_lens(2.0, 1.0, 1.0, 1.0 + 0x1p24);
+  EXPECT_EQ(depth_step_m(orthographic, 5.0), 1.0) << "the same everywhere";
+}
+
 TEST(Disputed, knows_the_edge_that_the_near_plane_cuts) {
   // A floor that begins behind the eye, and one that begins before it but nearer than the near
   // plane.

@@ -41,6 +41,28 @@ TEST(ErrorFloor, of_random_scenes_holds_disputed_pixels_only) {
   RecordProperty("pixels", std::to_string(pixels));
 }
 
+TEST(ErrorFloor, is_the_depth_buffers_where_it_has_coarse_steps) {
+  // Both are nearer to each other than a step at 4,000 near distances; the farther is drawn first.
+  Scene scene;
+  add_triangle(scene, {-300.0F, -300.0F, -400.07F}, {300.0F, -300.0F, -400.07F},
+               {0.0F, 300.0F, -400.07F});
+  add_triangle(scene, {-200.0F, -250.0F, -400.0F}, {200.0F, -250.0F, -400.0F},
+               {0.0F, 200.0F, -400.0F});
+  Stage stage(std::move(scene), camera_at({0.0, 0.0, 0.0}, {0.0, 0.0, -1.0}, 0.1, 1000.0),
+              {64, 64});
+  RayCaster caster(stage.scene, {.jitter_per_pixel = 1, .seed = 1, .threads = 2});
+  const FrameTruth truth = caster.trace(stage.frame);
+  ImageJudge judge(stage.scene);
+  judge.start(stage.frame, truth);
+  ASSERT_EQ(judge.full_image().size(), truth.ids.size());
+  std::uint64_t farther = 0;
+  for (std::size_t i = 0; i < truth.ids.size(); ++i) {
+    if (truth.ids[i] == 1 && judge.full_image()[i] == 0) ++farther;
+  }
+  EXPECT_GT(farther, 100U) << "the device cannot tell them apart";
+  EXPECT_EQ(judge.error_floor(stage.frame).undisputed_px, 0U);
+}
+
 TEST(ErrorFloor, of_another_frames_truth_is_not_excused) {
   Stage stage(cubes_at({{0.0, 0.0, 0.0}}), camera_at({0.0, 0.0, 6.0}, {0.0, 0.0, 0.0}), {64, 64});
   RayCaster caster(stage.scene, {.jitter_per_pixel = 1, .seed = 1, .threads = 2});
