@@ -206,6 +206,7 @@ void make_page(const fs::path& templates, const fs::path& work) {
   write_file(work / "print.html", with_blank_pictures(unnumbered, work));
   print_page(work, Printed::draft);
   const std::map<std::string, int> pages = named_pages(read_file(work / "report.pdf"));
+  fs::remove(work / "report.pdf");  // a final that is not printed must not leave the draft
   write_file(work / "print.html", with_page_numbers(html, pages));
   print_page(work, Printed::final);
 }

@@ -43,9 +43,9 @@ bool Disputes::operator()(const glm::dvec2& window_px, TriangleId a, TriangleId 
   const double depth_a = first.depth(window_px);
   const double depth_b = second.depth(window_px);
   const double larger = std::max(std::abs(depth_a), std::abs(depth_b));
-  const double step =
-      steps_ == DepthSteps::device ? depth_step_m(frame_->camera.lens, larger) : 0.0;
-  return std::abs(depth_a - depth_b) < disputed_relative_depth * larger + step;
+  const double steps =
+      steps_ == DepthSteps::device ? 2.0 * depth_step_m(frame_->camera.lens, larger) : 0.0;
+  return std::abs(depth_a - depth_b) < disputed_relative_depth * larger + steps;
 }
 
 bool Disputes::excuse_pixel(const glm::dvec2& window_px, TriangleId full, TriangleId drawn,

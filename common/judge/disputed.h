@@ -15,8 +15,9 @@ inline constexpr double disputed_edge_px = 1.0 / 128.0;
 /// Two depths that differ by less than this, relative to the larger, may come in either order.
 inline constexpr double disputed_relative_depth = 1e-4;
 
-/// Whether one of the two answers comes from the device: its depth buffer of 32-bit floats has
-/// steps, which beyond 1,678 near distances exceed disputed_relative_depth.
+/// Whether one of the two answers comes from the device, whose depth buffer of 32-bit floats has
+/// steps: each of two depths may be off by one, which beyond 839 near distances is more than
+/// disputed_relative_depth.
 enum class DepthSteps { none, device };
 
 /// The step of the device's depth buffer at a planar depth, metres: of a value between 1/2 and 1,
@@ -29,8 +30,7 @@ class Disputes {
  public:
   Disputes(const Frame& frame, const Scene& scene, DepthSteps steps = DepthSteps::none);
 
-  /// As is_disputed(); depths also come in either order if they differ by less than the device's
-  /// depth buffer can tell, in addition.
+  /// As is_disputed(); with a device, depths may differ by two steps of its buffer more.
   bool operator()(const glm::dvec2& window_px, TriangleId a, TriangleId b);
 
   /// Is a pixel excused that shows `drawn` where the full image shows `full` and a ray hits `seen`?

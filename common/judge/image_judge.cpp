@@ -55,7 +55,7 @@ void ImageJudge::start(const Frame& frame, const FrameTruth& truth) {
   impl_->full = impl_->draw(frame, {});
 }
 
-std::span<const TriangleId> ImageJudge::full_image() const { return impl_->full; }
+ShownImage ImageJudge::full_image() const { return {impl_->full, DepthSteps::device}; }
 
 ImageVerdict ImageJudge::judge(const Frame& frame, const VisibleSet& kept,
                                std::span<const ObjectId> one_sided) {
@@ -78,6 +78,13 @@ ImageVerdict ImageJudge::judge(const Frame& frame, const VisibleSet& kept,
 ImageJudge::Floor ImageJudge::error_floor(const Frame& frame) {
   const auto [disputed, undisputed] = impl_->compare(frame, impl_->truth->ids);
   return {disputed, undisputed};
+}
+
+ShownImage shown_image(Guarantee guarantee, std::span<const TriangleId> painted,
+                       const ImageJudge* device) {
+  if (!painted.empty()) return {painted};
+  if (guarantee == Guarantee::image_exact && device != nullptr) return device->full_image();
+  return {};
 }
 
 }  // namespace vislab

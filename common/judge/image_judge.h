@@ -23,9 +23,9 @@ class ImageJudge {
   /// which outlives the calls of judge() and error_floor(). Once a frame, before them.
   void start(const Frame& frame, const FrameTruth& truth);
 
-  /// Who owns each pixel of the full image, row by row from below; none_id for the background.
-  /// Valid until the next start().
-  std::span<const TriangleId> full_image() const;
+  /// Who owns each pixel of the full image; none_id for the background. Valid until the next
+  /// start().
+  ShownImage full_image() const;
 
   /// Differences between the image of `kept` and the full image. The device leaves out the backs of
   /// `one_sided` objects (RenderDevice::one_sided), as it did for the culler. A differing pixel is
@@ -48,5 +48,11 @@ class ImageJudge {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// What a method is held to beside an edge: the image that it painted (ICuller::surface_image), or,
+/// if it promises the device's image, the full one of `device` (null: nothing is drawn), which was
+/// started on the frame; no image for other methods.
+ShownImage shown_image(Guarantee guarantee, std::span<const TriangleId> painted,
+                       const ImageJudge* device);
 
 }  // namespace vislab

@@ -2,10 +2,10 @@
 //
 // Idea: what truth shows and the set lacks is found by merging two sorted lists; only if something
 // is lost are its samples looked at, each of them alone: the first kept triangle behind the lost
-// one is found by a ray, and the pair is disputed or not; of a method that paints, also the pair
-// with the triangle that its image shows there. Guarantee: every lost sample is either
-// false or excused by the rules of is_disputed; none is excused in total. Cost: O(visible + runs);
-// with losses, a ray and a dispute for each lost sample of C and J. Limits: as truth's.
+// one is found by a ray, and the pair is disputed or not; of a method that is held to an
+// image, also the pair with the triangle that this shows there. Guarantee: every lost sample is
+// either false or excused by the rules of is_disputed; none is excused in total. Cost: O(visible +
+// runs); with losses, a ray and a dispute for each lost sample of C and J. Limits: as truth's.
 #include "common/judge/metrics.h"
 
 #include <algorithm>
@@ -24,23 +24,25 @@ struct LostSample {
   bool disputed = false;
 };
 
-/// Says of each lost sample whether it is disputed. `owners` are empty but for samples of C.
+/// Says of each lost sample whether it is disputed. There is no image but for samples of C.
 void classify(const Frame& frame, const VisibleSet& kept, RayCaster& caster,
-              std::span<const TriangleId> owners, std::vector<LostSample>& samples) {
+              const ShownImage& shown, std::vector<LostSample>& samples) {
   std::vector<glm::dvec2> positions;
   positions.reserve(samples.size());
   for (const LostSample& sample : samples) positions.push_back(sample.window_px);
   const std::vector<RayCaster::Hit> hits = caster.cast(frame, positions, &kept);
   Disputes disputes(frame, caster.scene());
+  Disputes disputes_with_image(frame, caster.scene(), shown.steps);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     LostSample& sample = samples[i];
     sample.disputed = disputes(sample.window_px, sample.triangle, hits[i].triangle);
-    if (sample.disputed || owners.empty()) continue;
+    if (sample.disputed || shown.owners.empty()) continue;
     const auto column = static_cast<std::size_t>(sample.window_px.x);
     const auto row = static_cast<std::size_t>(sample.window_px.y);
-    const TriangleId owner = owners[row * static_cast<std::size_t>(frame.viewport.width) + column];
+    const TriangleId owner =
+        shown.owners[row * static_cast<std::size_t>(frame.viewport.width) + column];
     const bool is_shown = owner == none_id || kept.contains(owner);
-    sample.disputed = is_shown && disputes(sample.window_px, sample.triangle, owner);
+    sample.disputed = is_shown && disputes_with_image(sample.window_px, sample.triangle, owner);
   }
 }
 
@@ -156,8 +158,8 @@ void find_worst(const Scene& scene, const std::vector<LostSample>& lost, Granula
 }  // namespace
 
 Verdict judge_set(const Frame& frame, const FrameTruth& truth, const VisibleSet& kept,
-                  Granularity granularity, RayCaster& caster, std::span<const TriangleId> owners) {
-  if (!owners.empty() && owners.size() != truth.ids.size()) {
+                  Granularity granularity, RayCaster& caster, const ShownImage& shown) {
+  if (!shown.owners.empty() && shown.owners.size() != truth.ids.size()) {
     throw std::logic_error("an image of another size than truth's was handed to the judge");
   }
   const Scene& scene = caster.scene();
@@ -179,7 +181,7 @@ Verdict judge_set(const Frame& frame, const FrameTruth& truth, const VisibleSet&
   for (const RayCaster::Sample& sample : caster.jittered_hits(frame, left_out)) {
     jittered.push_back({sample.window_px, sample.triangle});
   }
-  classify(frame, kept, caster, owners, centres);
+  classify(frame, kept, caster, shown, centres);
   classify(frame, kept, caster, {}, jittered);
 
   std::vector<TriangleId> false_triangles;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/culler/culler.h"
+#include "common/judge/disputed.h"
 #include "common/judge/truth.h"
 
 namespace vislab {
@@ -41,17 +42,21 @@ struct Verdict {
   friend bool operator==(const Verdict&, const Verdict&) = default;
 };
 
+/// The image that a method is held to where its set alone does not say what lies at a pixel.
+struct ShownImage {
+  std::span<const TriangleId> owners;  // row by row from the bottom; none: there is no such image
+  DepthSteps steps = DepthSteps::none;
+};
+
 /// Judges a set. A lost sample whose triangle is A is disputed if is_disputed() says so of A and
-/// the first triangle that is hit there among the kept ones. `owners` is the image that the method
-/// painted, if it does that (ICuller::surface_image), or, of a method that promises the device's
-/// image, the device's full image: it shows what lies there instead of A, and a lost sample of C is
-/// disputed as well if is_disputed() says so of A and the owner, if that is kept or the background;
-/// throws std::logic_error if its size is not truth's. `caster` is that of the truth; it is called
-/// only if the set loses samples. `granularity` says whether max_false_px is over objects or
-/// triangles. O(visible + runs of the set), plus the tracing of what is lost.
+/// the first triangle that is hit there among the kept ones. Where an image says what lies there
+/// instead of A (shown_image()), a lost sample of C is disputed as well if A and the image's owner
+/// are, if that is kept or the background; throws std::logic_error if its size is not truth's.
+/// `caster` is that of the truth; it is called only if the set loses samples. `granularity` says
+/// whether max_false_px is over objects or triangles. O(visible + runs of the set), plus the
+/// tracing of what is lost.
 Verdict judge_set(const Frame& frame, const FrameTruth& truth, const VisibleSet& kept,
-                  Granularity granularity, RayCaster& caster,
-                  std::span<const TriangleId> owners = {});
+                  Granularity granularity, RayCaster& caster, const ShownImage& shown = {});
 
 /// The judge's verdict on an image.
 struct ImageVerdict {

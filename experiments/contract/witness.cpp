@@ -75,7 +75,7 @@ Comparison by_device(Scenario& scenario, const Frame& frame, const VisibleSet& d
   images.right = ids_of(device, scene, frame, VisibleSet(std::move(all)), {});
   images.drawn = ids_of(device, scene, frame, drawn, one_sided);
   const std::vector<TriangleId>& rays = scenario.truth().frame(frame.index).ids;
-  Disputes disputes(frame, scene);
+  Disputes disputes(frame, scene, DepthSteps::device);
   for (std::size_t i = 0; i < images.right.size(); ++i) {
     const TriangleId right = images.right[i];
     const TriangleId shown = images.drawn[i];

@@ -67,7 +67,7 @@ void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene
     const ObjectVisibility visibility = object_visibility(scene, seen);
     const CullableTriangles cullable(frame, scene);
     std::map<std::string, VisibleSet> sets;
-    std::map<std::tuple<std::string, std::string, bool, Granularity>, Verdict> verdicts;
+    std::map<std::tuple<std::string, std::string, Guarantee, Granularity>, Verdict> verdicts;
     std::map<std::string, ImageVerdict> images;  // by the sets that were drawn, and one-sided
     std::map<std::string, SurfaceVerdict> surfaces;
     for (Pending& entry : pending) {
@@ -78,13 +78,10 @@ void judge_cells(const std::vector<const ResultCell*>& cells, const Scene& scene
       const std::string& surface = entry.cell->frames[index].surface;
       const std::vector<TriangleId> painted =
           surface.empty() ? std::vector<TriangleId>() : store.load_surface(surface);
-      // What a method promises of the device's image may lie there as the device has it.
-      const bool is_by_image = image && entry.cell->guarantee == Guarantee::image_exact;
-      const std::tuple key(hash, surface, is_by_image, granularity);
+      const std::tuple key(hash, surface, entry.cell->guarantee, granularity);
       if (!verdicts.contains(key)) {
-        const std::span<const TriangleId> owners =
-            painted.empty() && is_by_image ? image->full_image() : painted;
-        verdicts.emplace(key, judge_set(frame, seen, set, granularity, caster, owners));
+        const ShownImage shown = shown_image(entry.cell->guarantee, painted, image.get());
+        verdicts.emplace(key, judge_set(frame, seen, set, granularity, caster, shown));
       }
       entry.verdicts.frames.push_back(verdicts.at(key));
       add(entry.verdicts.back_facing, cullable.back_facing(set));

@@ -1,5 +1,6 @@
 #include <iostream>
 
+#include "common/judge/image_judge.h"
 #include "common/judge/path_truth.h"
 #include "common/render/osmesa_device.h"
 #include "common/scene/error.h"
@@ -55,8 +56,11 @@ int show(const Lab& lab, const ShowCall& call) {
   frame.viewport = viewport;
   frame.objects = state.view();
   const Granularity granularity = culler->info().granularity;
+  ImageJudge image(scene);
+  image.start(frame, truth.frame(last));
+  const ShownImage shown = shown_image(culler->info().guarantee, run.surfaces[last], &image);
   const Verdict verdict =
-      judge_set(frame, truth.frame(last), run.sets[last], granularity, caster, run.surfaces[last]);
+      judge_set(frame, truth.frame(last), run.sets[last], granularity, caster, shown);
   const std::string title = scene.name + ", " + lab.cullers.short_name(call.cullers.front()) +
                             ", frame " + std::to_string(last);
   if (call.plan) {

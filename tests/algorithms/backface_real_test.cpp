@@ -11,6 +11,7 @@
 #include "common/scene/library.h"
 #include "tests/algorithms/run_culler.h"
 #include "tests/geometry/exact_facing.h"
+#include "tests/scene/repository_data.h"
 
 namespace vislab {
 namespace {
@@ -28,11 +29,6 @@ struct Sum {
   }
 };
 
-const DataFolders& folders() {
-  static const DataFolders data{VISLAB_SOURCE_DIR "/data", VISLAB_SOURCE_DIR "/data/cache"};
-  return data;
-}
-
 VisibleSet set_of(const Scene& scene, const std::vector<TriangleRange>& ranges) {
   std::vector<VisibleSet::Run> runs;
   for (const TriangleRange& range : ranges) {
@@ -44,7 +40,8 @@ VisibleSet set_of(const Scene& scene, const std::vector<TriangleRange>& ranges) 
 /// Judges a culler on `frames` frames of the scene's default path.
 Sum judged(const std::string& culler, const LoadedScene& loaded, int frames) {
   const Scene& scene = loaded.scene;
-  const Path path = load_path(loaded.default_path, scene, viewport, frames, folders());
+  const Path path =
+      load_path(loaded.default_path, scene, viewport, frames, test::repository_data());
   RayCaster caster(scene, settings);
   CullerRun run(culler, scene);
   Sum sum;
@@ -63,7 +60,7 @@ Sum judged(const std::string& culler, const LoadedScene& loaded, int frames) {
 
 class BackfaceOnRealMeshes : public testing::TestWithParam<const char*> {
  protected:
-  const LoadedScene loaded_ = load_scene(GetParam(), folders());
+  const LoadedScene loaded_ = load_scene(GetParam(), test::repository_data());
 };
 
 std::string name_of(const testing::TestParamInfo<const char*>& scene) { return scene.param; }
@@ -147,8 +144,8 @@ void expect_all_right(const Scene& scene, const Path& path) {
 class EveryBackfaceCuller : public BackfaceOnRealMeshes {};
 
 TEST_P(EveryBackfaceCuller, LosesNoSampleAndNoFrontFaceAndChangesDisputedPixelsOnly) {
-  expect_all_right(loaded_.scene,
-                   load_path(loaded_.default_path, loaded_.scene, viewport, 3, folders()));
+  expect_all_right(loaded_.scene, load_path(loaded_.default_path, loaded_.scene, viewport, 3,
+                                            test::repository_data()));
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryBackfaceCuller,
@@ -162,7 +159,7 @@ TEST(EveryBackfaceCullerOnAPath, LosesNothingWhereTheEyeGoesThroughASolid) {
   parameters.bumps = Bumps::low;
   Scene scene = make_bumpy_sphere(parameters);
   scene.finish();
-  const Path path = load_path("through", scene, viewport, 9, folders());
+  const Path path = load_path("through", scene, viewport, 9, test::repository_data());
   const auto inside = std::ranges::count_if(path.frames, [](const PathFrame& frame) {
     return glm::length(frame.camera.pose.eye) < 0.9;  // the sphere's radius is at least .93
   });
@@ -172,7 +169,8 @@ TEST(EveryBackfaceCullerOnAPath, LosesNothingWhereTheEyeGoesThroughASolid) {
 }
 
 TEST(BackfaceOnTheCow, LosesWhatItShowsOfItsBackIfToldTo) {
-  const Sum sum = judged("backface.polygon[open=cull]", load_scene("cow", folders()), 12);
+  const Sum sum =
+      judged("backface.polygon[open=cull]", load_scene("cow", test::repository_data()), 12);
   EXPECT_GT(sum.lost, 0U);
   EXPECT_GT(sum.culled_share(), 0.3);
 }

@@ -7,19 +7,20 @@
 #include "algorithms/all_cullers.h"
 #include "common/scene/library.h"
 #include "experiments/run/path_run.h"
+#include "tests/scene/repository_data.h"
 
 namespace vislab {
 namespace {
 
-const DataFolders folders{VISLAB_SOURCE_DIR "/data", VISLAB_SOURCE_DIR "/data/cache"};
 constexpr Viewport viewport{96, 96};
 
 /// The kinds in some frames of a scene's own path, with their truth.
 class KindsOfFrames : public ::testing::TestWithParam<const char*> {
  protected:
-  KindsOfFrames() : loaded_(load_scene(GetParam(), folders)) {
+  KindsOfFrames() : loaded_(load_scene(GetParam(), test::repository_data())) {
     register_all_cullers(registry_);
-    const Path path = load_path(loaded_.default_path, loaded_.scene, viewport, 6, folders);
+    const Path path =
+        load_path(loaded_.default_path, loaded_.scene, viewport, 6, test::repository_data());
     SceneState state(loaded_.scene);
     RayCaster caster(loaded_.scene, TruthSettings{4, 1, 1});
     KindFinder finder(loaded_.scene, registry_);

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "common/scene/error.h"
 #include "experiments/analysis/knees_file.h"
+#include "tests/input_error.h"
 
 namespace vislab {
 namespace {
@@ -215,14 +215,10 @@ TEST(KneesFile, IsWrittenOnlyWhenNothingIsMissing) {
   }
   BlockSummary part = whole;
   part.cells.pop_back();
-  try {
-    knees_text({knees_of(sweep, {whole, part})});
-    FAIL() << "a knee of something that was not measured";
-  } catch (const InputError& error) {
-    const std::string message = error.what();
-    EXPECT_NE(message.find("test_depth (test.tree at 8, two: not run)"), std::string::npos)
-        << message;
-  }
+  EXPECT_TRUE(says(input_error([&] {
+                     knees_text({knees_of(sweep, {whole, part})});
+                   }),
+                   "test_depth (test.tree at 8, two: not run)"));
 }
 
 }  // namespace

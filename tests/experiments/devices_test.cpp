@@ -4,11 +4,11 @@
 #include <memory>
 
 #include "common/render/modelled_gpu.h"
-#include "common/scene/error.h"
 #include "common/scene/generators/generators.h"
 #include "experiments/calibration/device_fit.h"
 #include "experiments/devices/device_spec.h"
 #include "experiments/run/timed_device.h"
+#include "tests/input_error.h"
 
 namespace vislab {
 namespace {
@@ -51,15 +51,8 @@ TEST(DeviceSpec, ASerialFitAndSynchronousDrawingNeedNoThreads) {
 
 TEST(DeviceSpec, ErrorsNameWhatIsAllowed) {
   const auto expect = [](const std::string& text, const std::vector<std::string>& words) {
-    try {
-      parse_device(text);
-      FAIL() << text << " was taken";
-    } catch (const InputError& error) {
-      for (const std::string& word : words) {
-        EXPECT_NE(std::string(error.what()).find(word), std::string::npos)
-            << "'" << word << "' in: " << error.what();
-      }
-    }
+    const std::string message = input_error([&] { parse_device(text); });
+    for (const std::string& word : words) EXPECT_TRUE(says(message, word)) << text;
   };
   expect("vulkan", {"vulkan", "osmesa", "none", "modelled"});
   expect("modelled[preset=voodoo]", {"voodoo", "gpu", "modern", "osmesa"});

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "algorithms/all_cullers.h"
-#include "common/scene/error.h"
 #include "experiments/analysis/knees_file.h"
 #include "experiments/matrix/size_coverage.h"
 #include "tests/input_error.h"
@@ -156,12 +155,8 @@ TEST_F(SizeSweepTest, ASizeWithoutSweepAndReasonIsNamedAsIsOneWithBoth) {
   const std::vector<SizeSweep> sweeps =
       load_size_sweeps(repository / "experiments" / "model_size", registry_);
   const auto refused = [&](const std::string& text) {
-    try {
-      size_coverage(sweeps, registry_, folder_.write("entries.toml", text));
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return input_error(
+        [&] { size_coverage(sweeps, registry_, folder_.write("entries.toml", text)); });
   };
   EXPECT_NE(refused("").find("area of detail.screen_size has no size sweep"), std::string::npos)
       << refused("");

@@ -103,10 +103,10 @@ TEST(Disputed, is_a_sample_where_two_triangles_have_the_same_depth) {
 }
 
 TEST(Disputed, with_a_device_is_what_its_depth_buffer_cannot_tell) {
-  // At 4,000 near distances a step is 0.095 m, and 1e-4 of the depth 0.04 m.
+  // At 4,000 near distances two steps are 0.19 m, and 1e-4 of the depth 0.04 m.
   Scene scene;
   const std::array<glm::vec2, 3> large = {{{5, 5}, {95, 5}, {5, 95}}};
-  for (const float depth : {400.0F, 400.02F, 400.12F, 400.15F}) {
+  for (const float depth : {400.0F, 400.02F, 400.22F, 400.25F}) {
     add_window_triangle(scene, large, {depth, depth, depth});
   }
   Stage stage(std::move(scene), square_camera(0.1, 1000.0), viewport);

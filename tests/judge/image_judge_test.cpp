@@ -54,13 +54,23 @@ TEST(ErrorFloor, is_the_depth_buffers_where_it_has_coarse_steps) {
   const FrameTruth truth = caster.trace(stage.frame);
   ImageJudge judge(stage.scene);
   judge.start(stage.frame, truth);
-  ASSERT_EQ(judge.full_image().size(), truth.ids.size());
+  const std::span<const TriangleId> owners = judge.full_image().owners;
+  ASSERT_EQ(owners.size(), truth.ids.size());
   std::uint64_t farther = 0;
   for (std::size_t i = 0; i < truth.ids.size(); ++i) {
-    if (truth.ids[i] == 1 && judge.full_image()[i] == 0) ++farther;
+    if (truth.ids[i] == 1 && owners[i] == 0) ++farther;
   }
   EXPECT_GT(farther, 100U) << "the device cannot tell them apart";
   EXPECT_EQ(judge.error_floor(stage.frame).undisputed_px, 0U);
+  // Whoever leaves out the nearer one leaves the device's image as it is.
+  const VisibleSet kept = all_but(stage, {1});
+  const auto false_px = [&](Guarantee guarantee) {
+    return judge_set(stage.frame, truth, kept, Granularity::triangle, caster,
+                     shown_image(guarantee, {}, &judge))
+        .false_px;
+  };
+  EXPECT_GT(false_px(Guarantee::conservative), farther / 2);
+  EXPECT_EQ(false_px(Guarantee::image_exact), false_px(Guarantee::conservative) - farther);
 }
 
 TEST(ErrorFloor, of_another_frames_truth_is_not_excused) {

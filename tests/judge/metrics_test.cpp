@@ -174,7 +174,7 @@ TEST(JudgeSet, excuses_a_pixel_that_a_painted_image_gives_to_an_edge_beside_it) 
   const auto verdict = [&](TriangleId owner) {
     const std::vector<TriangleId> owners(width * height, owner);
     return judge_set(judged.stage.frame, judged.truth, kept, Granularity::triangle, judged.caster,
-                     owners);
+                     ShownImage{owners});
   };
   EXPECT_EQ(judged.judge(kept).false_px, 61U * height);
   EXPECT_EQ(verdict(1).false_px, 60U * height) << "only those beside the edge";

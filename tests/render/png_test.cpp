@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/scene/error.h"
+#include "tests/input_error.h"
 #include "tests/temporary_folder.h"
 
 namespace vislab {
@@ -33,12 +34,7 @@ TEST_F(Png, ReadsBackWhatItWrote) {
 
 TEST_F(Png, NamesThePathThatCannotBeWritten) {
   const fs::path path = folder_ / "missing" / "a.png";
-  try {
-    write_png(path, image_);
-    FAIL() << "nothing was thrown";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find(path.string()), std::string::npos) << error.what();
-  }
+  EXPECT_TRUE(says(input_error([&] { write_png(path, image_); }), path.string()));
 }
 
 TEST_F(Png, RefusesNamesOfOtherFormats) {

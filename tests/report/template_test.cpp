@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/scene/error.h"
+#include "tests/input_error.h"
 
 namespace vislab {
 namespace {
@@ -47,12 +47,7 @@ TEST(Template, ValuesAreNotFilledAgain) {
 }
 
 void expect_message(const std::string& text, const std::string& part) {
-  try {
-    fill(text);
-    FAIL() << "no error for " << text;
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-  }
+  EXPECT_TRUE(says(input_error([&] { fill(text); }), part)) << text;
 }
 
 TEST(Template, FaultsAreNamedWithTheirLine) {
