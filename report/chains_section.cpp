@@ -197,6 +197,7 @@ void add_chain_fields(const ReportInput& input, Fields& fields) {
   fields.flag("has_choices", !choices.empty());
   fields.flag("has_families", !families.empty());
   fields.lists["guides"] = guide_fields(input.blocks);
+  fields.flag("has_guides", !fields.lists["guides"].empty());
   fields.flag("has_chains", !choices.empty() || !fields.lists["guides"].empty());
 }
 

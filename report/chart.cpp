@@ -32,6 +32,7 @@ constexpr double label_height = 10.0;
 constexpr double shared_label_reach = 11.0;  // marks nearer than this share a label
 
 constexpr const char* reference_colour = "#000000";
+constexpr const char* label_colour = "#000000";
 constexpr const char* hull_style = "lw 1.6 lc rgb '#9A9A9A'";
 constexpr const char* none_style = "dt (2,4) lw 1.2 lc rgb '#777777'";
 constexpr const char* zero_band_colour = "#EEF2F6";
@@ -151,7 +152,7 @@ class ChartWriter {
     }
     errors.axis = logarithmic_axis(errors.values, 10.0, "0 of\n" + format_count(pixels));
     const double most = over.values.empty() ? 0.0 : std::ranges::max(over.values);
-    over.axis = most > 0.0 ? logarithmic_axis(over.values, most, "0") : positive_axis({1.0});
+    over.axis = logarithmic_axis(over.values, most > 0.0 ? most : 1.0, "0");
     panels_ = {std::move(errors), std::move(over)};
   }
 
@@ -353,24 +354,29 @@ class ChartWriter {
 
   void write_labels(std::size_t index, const std::vector<ChartBox>& lines) {
     std::vector<LabelRequest> requests;
-    std::vector<std::string> texts;
+    std::vector<std::string> texts, colours;
     std::vector<ChartBox> obstacles;
     for (const ChartBox& line : lines) {
       obstacles.push_back({line.left - 1.0, line.bottom - 1.0, line.right + 1.0, line.top + 1.0});
     }
-    const auto request = [&](double x, double y, const std::string& text, double letter) {
+    const auto request = [&](double x, double y, const std::string& text, double letter,
+                             const std::string& colour) {
       texts.push_back(text);
+      colours.push_back(colour);
       requests.push_back({x, y, letter * letters_of(text), label_height});
     };
     for (const PointGroup& group : group_points(numbered_points(index), shared_label_reach)) {
-      request(group.x, group.y, number_list(group.numbers), digit_width);
+      request(group.x, group.y, number_list(group.numbers), digit_width, label_colour);
     }
     for (std::size_t i = 0; i < marks_.size(); ++i) {
       const glm::dvec2 at = place_of(index, i);
       obstacles.push_back(
           {at.x - mark_radius, at.y - mark_radius, at.x + mark_radius, at.y + mark_radius});
       if (!marks_[i].named) continue;
-      for (const std::string& label : marks_[i].labels) request(at.x, at.y, label, letter_width);
+      // Several curves may have the same values: each has its colour.
+      for (const std::string& label : marks_[i].labels) {
+        request(at.x, at.y, label, letter_width, marks_[i].look.colour);
+      }
       obstacles.push_back(
           {pixel_x(index, x_[i].low), at.y - 1.0, pixel_x(index, x_[i].high), at.y + 1.0});
     }
@@ -382,7 +388,7 @@ class ChartWriter {
       if (!label.is_legible) continue;  // symbol and colour are in the legend
       if (label.leader) write_leader(requests[i], label);
       out_ << "set label " << quoted(texts[i]) << " at screen " << label.x / chart_width << ','
-           << label.y / chart_height_ << " center font ',10' front\n";
+           << label.y / chart_height_ << " center font ',10' textcolor rgb '" << colours[i] << "' front\n";
     }
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "report/format.h"
 
@@ -12,11 +13,16 @@ namespace {
 constexpr double widest_linear_ratio = 6.0;
 constexpr int wanted_ticks = 6;
 
-/// "0.5", "20", "1,000": no more digits than a round number needs.
+/// "10⁻⁴", "0.5", "20", "1,000": no more digits than a round number needs.
 std::string tick_label(double value) {
   if (value >= 1.0) {
     const double tenths = std::round(10.0 * value) / 10.0;
     if (tenths == std::round(tenths)) return format_count(static_cast<std::uint64_t>(tenths));
+  }
+  if (value > 0.0 && value < 0.001) {
+    std::array<char, 32> shortest{};
+    std::snprintf(shortest.data(), shortest.size(), "%.0e", value);
+    return format_written(shortest.data());
   }
   std::string label = format_number(value);
   if (label.find('.') != std::string::npos) {

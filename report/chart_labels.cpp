@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/glm.hpp>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 namespace vislab {
 namespace {
@@ -13,12 +15,56 @@ constexpr double ring_step_px = 6.0;  // between the circles of places that are 
 constexpr int rings = 9;
 constexpr int directions = 16;
 constexpr double leader_from_px = 15.0;
-constexpr double most_covered = 0.2;                             // of a legible label
+constexpr double most_covered = 0.1;                             // of a legible label
 constexpr double weight_outside = 10.0, weight_of_label = 10.0;  // beside other things covered
+constexpr double crossing_px2 = 400.0;  // of a leader with a label or a leader; as if so much of a
+                                        // label were covered
 
 ChartBox box_at(double x, double y, const LabelRequest& request) {
   return {x - 0.5 * request.width, y - 0.5 * request.height, x + 0.5 * request.width,
           y + 0.5 * request.height};
+}
+
+/// The line that joins a label to its point.
+struct Leader {
+  glm::dvec2 from, to;
+};
+
+bool crosses(const Leader& leader, const ChartBox& box) {
+  const glm::dvec2 way = leader.to - leader.from;
+  double first = 0.0;
+  double last = 1.0;
+  const auto clip = [&](double start, double step, double low, double high) {
+    if (step == 0.0) return start > low && start < high;
+    const auto [enters, leaves] = std::minmax({(low - start) / step, (high - start) / step});
+    first = std::max(first, enters);
+    last = std::min(last, leaves);
+    return first < last;
+  };
+  return clip(leader.from.x, way.x, box.left, box.right) &&
+         clip(leader.from.y, way.y, box.bottom, box.top);
+}
+
+bool crosses(const Leader& a, const Leader& b) {
+  const auto side = [](const Leader& line, const glm::dvec2& point) {
+    const glm::dvec2 way = line.to - line.from;
+    const glm::dvec2 there = point - line.from;
+    return way.x * there.y - way.y * there.x;
+  };
+  return side(a, b.from) * side(a, b.to) < 0.0 && side(b, a.from) * side(b, a.to) < 0.0;
+}
+
+/// How often a label and its leader, if it has one, cross the leaders and labels that are there.
+std::ptrdiff_t crossings(const ChartBox& box, const std::optional<Leader>& leader,
+                         const std::vector<ChartBox>& labels, const std::vector<Leader>& leaders) {
+  std::ptrdiff_t count =
+      std::ranges::count_if(leaders, [&](const Leader& other) { return crosses(other, box); });
+  if (!leader) return count;
+  count += std::ranges::count_if(labels,
+                                 [&](const ChartBox& label) { return crosses(*leader, label); });
+  return count + std::ranges::count_if(leaders, [&](const Leader& other) {
+           return crosses(*leader, other);
+         });
 }
 
 }  // namespace
@@ -33,6 +79,7 @@ std::vector<PlacedLabel> place_labels(const std::vector<LabelRequest>& requests,
                                       const std::vector<ChartBox>& obstacles,
                                       const ChartBox& frame) {
   std::vector<ChartBox> taken;  // by legible labels
+  std::vector<Leader> leaders;  // theirs
   std::vector<PlacedLabel> placed;
   for (const LabelRequest& request : requests) {
     const double area = request.width * request.height;
@@ -55,15 +102,24 @@ std::vector<PlacedLabel> place_labels(const std::vector<LabelRequest>& requests,
         for (const ChartBox& other : taken) on_labels += box.overlap(other);
         double covered = 0.0;
         for (const ChartBox& other : obstacles) covered += box.overlap(other);
-        const double cost = covered + weight_outside * outside + weight_of_label * on_labels;
+        const bool has_leader = radius > leader_from_px;
+        std::optional<Leader> leader;
+        if (has_leader) leader = Leader{{request.x, request.y}, {x, y}};
+        const auto crossed = crossings(box, leader, taken, leaders);
+        const double cost = covered + weight_outside * outside + weight_of_label * on_labels +
+                            crossing_px2 * static_cast<double>(crossed);
         if (cost < least) {
           least = cost;
-          best = {x, y, radius > leader_from_px,
-                  outside == 0.0 && on_labels == 0.0 && covered <= most_covered * area};
+          best = {x, y, has_leader,
+                  outside == 0.0 && on_labels == 0.0 && crossed == 0 &&
+                      covered <= most_covered * area};
         }
       }
     }
-    if (best.is_legible) taken.push_back(box_at(best.x, best.y, request));
+    if (best.is_legible) {
+      taken.push_back(box_at(best.x, best.y, request));
+      if (best.leader) leaders.push_back({{request.x, request.y}, {best.x, best.y}});
+    }
     placed.push_back(best);
   }
   return placed;

@@ -188,6 +188,7 @@ void add_claim_fields(const ReportInput& input, Fields& fields) {
   fields.flag("has_claims", any);
   fields.values["claim_count"] = std::to_string(claims);
   add_counts(all, "claims_", fields);
+  fields.flag("has_claims_not_run", all[static_cast<std::size_t>(ClaimVerdict::not_run)] > 0);
 }
 
 }  // namespace vislab

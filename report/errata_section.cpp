@@ -288,6 +288,7 @@ void add_errata_fields(const ReportInput& input, const std::filesystem::path& fo
   fields.flag("has_figure_errata", !fields.lists["figure_errata"].empty());
   add_museum(variants, fields);
   add_pictures(input, variants, folder, fields);
+  fields.flag("has_errata_pictures", !fields.lists["errata_pictures"].empty());
 }
 
 }  // namespace vislab

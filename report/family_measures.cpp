@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "report/finding.h"
+
 namespace vislab {
 namespace {
 
@@ -91,6 +93,10 @@ FamilyOn family_on(const BlockSummary& block, const std::string& family, const R
     const CellSummary& cell = *method.cell;
     if (cell.false_px > 0 && (found.worst == nullptr || cell.false_px > found.worst->false_px)) {
       found.worst = &cell;
+    }
+    if (wrong_pixels(cell) > 0 &&
+        (found.most_wrong == nullptr || wrong_pixels(cell) > wrong_pixels(*found.most_wrong))) {
+      found.most_wrong = &cell;
     }
     if (!is_free_of_errors(cell)) {
       ++found.erring;

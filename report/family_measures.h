@@ -43,6 +43,7 @@ struct FamilyOn {
   /// where nothing is drawn, leaves the least share of the triangles. Null: there is none.
   const FamilyMethod* best = nullptr;
   const CellSummary* worst = nullptr;  // with the most false pixels; null: all have none
+  const CellSummary* most_wrong = nullptr;  // as `worst`, by wrong_pixels()
   std::size_t erring = 0;
 
   FamilyOn() = default;

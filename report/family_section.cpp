@@ -91,10 +91,10 @@ Fields best_row(const std::vector<BlockSummary>& blocks, const BlockSummary& blo
     row.values["recall"] = format_percent(best.recall);
   }
   row.values["erring"] = std::to_string(on.erring) + " of " + std::to_string(on.methods.size());
-  row.values["worst"] = on.worst != nullptr
-                            ? markdown_code(on.worst->culler) + ", " +
-                                  format_percent(static_cast<double>(on.worst->false_px) /
-                                                 static_cast<double>(on.worst->pixels))
+  row.values["worst"] = on.most_wrong != nullptr
+                            ? markdown_code(on.most_wrong->culler) + ", " +
+                                  format_percent(static_cast<double>(wrong_pixels(*on.most_wrong)) /
+                                                 static_cast<double>(on.most_wrong->pixels))
                             : "–";
   return row;
 }
@@ -200,8 +200,9 @@ std::string saving_sentence(const std::vector<BlockSummary>& blocks,
   }
   if (drawn == 0) return {};
   std::string text = "On " + std::to_string(saving) + " of the " + std::to_string(drawn) +
-                     " scenes and paths that were drawn, a method of this family saves time "
-                     "without errors, beyond the noise, of what drawing takes without it";
+                     " scenes and paths that were drawn and have a method of this family "
+                     "without errors, one saves more than the noise of the time that drawing takes "
+                     "without it";
   if (most == nullptr) return text + ".";
   text += "; most on " + place_of(blocks, *most_block) + ", where " +
           markdown_code(most->cell->culler) + " saves " + format_percent(1.0 - most->ratio.value);

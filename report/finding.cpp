@@ -30,18 +30,6 @@ FindingKind kind_of(const Estimate& ratio, const Estimate& noise) {
   return FindingKind::within_noise;
 }
 
-/// "71 %", or "2.4 times the frame" where a percentage would be unwieldy.
-std::string loss_text(double ratio) {
-  return ratio < 2.0 ? format_percent(ratio - 1.0)
-                     : std::string("(") + format_number(ratio) + " times the frame)";
-}
-
-/// Pixels that are wrong: those left out, or where none is, those whose image differs, also the one
-/// that a method painted itself.
-std::uint64_t wrong_pixels(const CellSummary& cell) {
-  return std::max({cell.false_px, cell.drawn ? cell.image_px : 0, cell.surface_px});
-}
-
 /// Where nothing is drawn: what counts is what is left over.
 Finding find_undrawn(const BlockSummary& block) {
   Finding finding;
@@ -74,6 +62,10 @@ void add_errors(const CellSummary& cell, Fields& fields) {
 }
 
 }  // namespace
+
+std::uint64_t wrong_pixels(const CellSummary& cell) {
+  return std::max({cell.false_px, cell.drawn ? cell.image_px : 0, cell.surface_px});
+}
 
 Finding find(const BlockSummary& block) {
   if (!block.drawn) return find_undrawn(block);
@@ -122,7 +114,6 @@ Fields finding_fields(const BlockSummary& block, const std::string& scene) {
     fields.values["best"] = markdown_code(finding.best->culler);
     fields.values["errors_of"] = format_of(wrong_pixels(*finding.best), finding.best->pixels);
     fields.values["saving"] = format_percent(1.0 - ratio.value);
-    fields.values["loss"] = loss_text(ratio.value);
     fields.values["ratio"] = format_number(ratio.value);
     fields.values["interval"] = finding.kind == FindingKind::saves
                                     ? format_percents(1.0 - ratio.high, 1.0 - ratio.low)

@@ -28,6 +28,10 @@ struct Finding {
   const CellSummary* erring = nullptr;
 };
 
+/// Pixels that are wrong: those left out, or where none is, those whose image differs, also the one
+/// that a method painted itself.
+std::uint64_t wrong_pixels(const CellSummary& cell);
+
 /// Pointers lead into `block`. Only methods count, not the anchors. One that is wrong on purpose is
 /// never the best, even where its mistake does no harm.
 Finding find(const BlockSummary& block);

@@ -97,9 +97,35 @@ std::string format_scientific(double value) {
          std::to_string(std::abs(exponent)) + "^";
 }
 
+std::string format_written(std::string_view number) {
+  constexpr std::array digits{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  const std::size_t e = number.find('e');
+  if (e == 0 || e == std::string_view::npos) return std::string(number);
+  std::string exponent;
+  for (const char c : number.substr(e + 1)) {
+    if (c == '-') {
+      exponent += "⁻";
+    } else if (std::isdigit(static_cast<unsigned char>(c)) == 0) {
+      if (c != '+') return std::string(number);  // a word
+    } else if (c != '0' || !(exponent.empty() || exponent == "⁻")) {
+      exponent += digits[static_cast<std::size_t>(c - '0')];
+    }
+  }
+  const std::string_view factor = number.substr(0, e);
+  const std::string times = narrow_gap + std::string("×") + narrow_gap;
+  return (factor == "1" ? "" : std::string(factor) + times) + "10" + exponent;
+}
+
 std::string markdown_text(std::string_view text) {
   std::string result;
-  for (const char c : text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    const std::size_t end = c == '`' ? text.find('`', i + 1) : std::string_view::npos;
+    if (end != std::string_view::npos && end > i + 1) {
+      result += markdown_code(text.substr(i + 1, end - i - 1));
+      i = end;
+      continue;
+    }
     if (c == '\n' || c == '\r' || c == '\t') {
       result += ' ';
       continue;

@@ -2,22 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <set>
 
 #include "report/format.h"
 
 namespace vislab {
 namespace {
-
-std::set<std::string> stages_of(const std::vector<BlockSummary>& blocks) {
-  std::set<std::string> names;
-  for (const BlockSummary& block : blocks) {
-    for (const CellSummary& cell : block.cells) {
-      for (const CullerSpec& stage : parse_chain(cell.canonical)) names.insert(stage.name);
-    }
-  }
-  return names;
-}
 
 Fields parameter_fields(const ParameterSpec& parameter) {
   Fields row;
@@ -88,10 +77,8 @@ std::string words_for(Culls culls) {
 std::vector<Fields> method_fields(const ReportInput& input) {
   std::vector<Fields> methods;
   if (input.cullers == nullptr) return methods;
-  for (const std::string& name : stages_of(input.blocks)) {
-    const auto found = input.cullers->entries().find(name);
-    if (found == input.cullers->entries().end()) continue;  // measured by an older lab
-    const CullerInfo& info = found->second.info;
+  for (const auto& [name, entry] : input.cullers->entries()) {
+    const CullerInfo& info = entry.info;
     Fields fields;
     fields.values["name"] = markdown_code(info.name);
     fields.values["summary"] = markdown_text(info.summary);

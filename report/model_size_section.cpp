@@ -59,10 +59,9 @@ Fields value_row(const SizeSweep& sweep, const SizeVerdict& verdict, std::size_t
   const SizePoint& point = verdict.common.points[value];
   Fields row;
   std::string name = markdown_text(sweep.values[value]);
-  if (verdict.common.knee == value) {
-    name = "**" + name + "** (knee)";
-  } else if (std::ranges::count(verdict.common.may_be_knee, value) > 0) {
-    name += " (may be the knee)";
+  if (std::ranges::count(verdict.common.may_be_knee, value) > 0) {
+    const bool is_told = verdict.common.may_be_knee.size() == 1;
+    name = "**" + name + "** " + (is_told ? "(knee)" : "(may be the knee)");
   }
   if (verdict.method.default_value == value) name += " (default)";
   row.values["value"] = name;
@@ -135,9 +134,12 @@ void add_model_size_fields(const std::vector<SizeResult>& sizes, Fields& fields)
       scenes += (scenes.empty() ? "" : " · ") + markdown_text(place_of(scene));
     }
     entry.values["places"] = scenes;
+    entry.lists["methods"];
     for (std::size_t m = 0; m < sizes[i].verdicts.size(); ++m) {
       const SizeVerdict& verdict = sizes[i].verdicts[m];
-      entry.lists["methods"].push_back(method_fields(sweep, verdict, chart_file(i, m)));
+      if (verdict.was_measured()) {
+        entry.lists["methods"].push_back(method_fields(sweep, verdict, chart_file(i, m)));
+      }
       summary.push_back(summary_row(sweep, verdict));
     }
     dials.push_back(std::move(entry));

@@ -18,6 +18,7 @@ using namespace chart;
 constexpr double left_margin = 62.0, right_margin = 14.0, column_gap = 18.0;
 constexpr double panel_height = 150.0, panel_pitch = 206.0;  // with its title and ticks
 constexpr double axis_height = 50.0, top_margin = 26.0;
+constexpr std::size_t most_in_two_columns = 4;  // panels; more stand in three
 constexpr double last_nines = 4.0;  // where shares of 1 are drawn
 /// Lines that lie on each other are told apart by moving each a little along the time.
 constexpr double sidestep = 0.04;
@@ -35,7 +36,9 @@ class PersistenceChart {
  public:
   PersistenceChart(const std::vector<PersistenceRow>& rows, std::ostream& out)
       : rows_(rows), out_(out) {
+    const bool any = std::ranges::any_of(rows_, has_points);
     for (const PersistenceRow& row : rows_) {
+      if (any && !has_points(row)) continue;
       add_new(scenes_, row.scene);
       add_new(paths_, label_of(row));
     }
@@ -48,7 +51,8 @@ class PersistenceChart {
   }
 
   void write(const std::filesystem::path& file) {
-    const std::size_t columns = std::min<std::size_t>(scenes_.size(), 2);
+    columns_ = std::min<std::size_t>(scenes_.size(), scenes_.size() > most_in_two_columns ? 3 : 2);
+    const std::size_t columns = std::max<std::size_t>(columns_, 1);
     const std::size_t lines = (scenes_.size() + columns - 1) / columns;
     const double bottom = legend_.height() + axis_height;
     height_ = bottom + static_cast<double>(lines - 1) * panel_pitch + panel_height + top_margin;
@@ -73,6 +77,12 @@ class PersistenceChart {
     if (std::ranges::find(list, text) == list.end()) list.push_back(text);
   }
 
+  static bool has_points(const PersistenceRow& row) {
+    return std::ranges::any_of(bands, [&](const auto& band) {
+      return pooled(row.counts.after, band.first, band.second).cases >= least_persistence_cases;
+    });
+  }
+
   /// Paths that are named after their scene are the same line in all panels.
   static std::string label_of(const PersistenceRow& row) {
     const std::string prefix = row.scene + "_";
@@ -83,6 +93,18 @@ class PersistenceChart {
     return static_cast<std::size_t>(std::ranges::find(paths_, label_of(row)) - paths_.begin());
   }
 
+  /// The row's place among those of its scene, counted from their middle.
+  double place_in_panel(std::size_t row) const {
+    double before = 0.0;
+    double others = 0.0;
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      if (r == row || rows_[r].scene != rows_[row].scene || !has_points(rows_[r])) continue;
+      before += r < row ? 1.0 : 0.0;
+      others += 1.0;
+    }
+    return before - 0.5 * others;
+  }
+
   void write_points() {
     out_ << "$formula << END\n";
     for (std::uint32_t t = 1; t <= PersistenceCounter::last_time; ++t) {
@@ -90,8 +112,7 @@ class PersistenceChart {
     }
     out_ << "END\n";
     for (std::size_t r = 0; r < rows_.size(); ++r) {
-      const double step = sidestep * (static_cast<double>(look_of(rows_[r])) -
-                                      0.5 * static_cast<double>(paths_.size() - 1));
+      const double step = sidestep * place_in_panel(r);
       out_ << "$row" << r << " << END\n";
       for (const auto& [first, last] : bands) {
         const StillHidden still = pooled(rows_[r].counts.after, first, last);
@@ -133,7 +154,8 @@ class PersistenceChart {
     ChartAxis x;
     x.low = -0.2;
     x.high = 5.0;
-    for (const int t : {1, 2, 3, 4, 6, 8, 12, 16, 30}) {
+    for (const int t : columns_ < 3 ? std::vector{1, 2, 3, 4, 6, 8, 12, 16, 30}
+                                    : std::vector{1, 2, 4, 8, 16, 30}) {
       x.ticks.emplace_back(std::log2(t), std::to_string(t));
     }
     set_axis(out_, 'x', x);
@@ -162,6 +184,7 @@ class PersistenceChart {
   std::ostream& out_;
   std::vector<std::string> scenes_;
   std::vector<std::string> paths_;
+  std::size_t columns_ = 0;
   Legend legend_;
   double height_ = 0.0;
 };

@@ -126,7 +126,8 @@ std::string text_of(const SceneShare& share) {
   return format_number(share.still.share().value) + " (" + markdown_text(share.scene) + ")";
 }
 
-/// The widest gap between two paths of one scene at a time, as text; empty if no scene has two.
+/// The two paths of one scene that differ most at a time, of those whose intervals lie apart, as
+/// text; empty if there are none.
 std::string spread_of_paths(const std::vector<PersistenceRow>& rows, std::size_t t) {
   std::string widest;
   double most = -1.0;
@@ -135,12 +136,12 @@ std::string spread_of_paths(const std::vector<PersistenceRow>& rows, std::size_t
       if (low.scene != high.scene || low.path == high.path) continue;
       if (low.counts.after[t].cases < least_persistence_cases) continue;
       if (high.counts.after[t].cases < least_persistence_cases) continue;
-      const double least = low.counts.after[t].share().value;
-      const double greatest = high.counts.after[t].share().value;
-      if (greatest - least <= most) continue;
-      most = greatest - least;
-      widest = format_number(least) + " (" + markdown_code(low.path) + ") and " +
-               format_number(greatest) + " (" + markdown_code(high.path) + ")";
+      const Estimate least = low.counts.after[t].share();
+      const Estimate greatest = high.counts.after[t].share();
+      if (least.high >= greatest.low || greatest.value - least.value <= most) continue;
+      most = greatest.value - least.value;
+      widest = format_number(least.value) + " (" + markdown_code(low.path) + ") and " +
+               format_number(greatest.value) + " (" + markdown_code(high.path) + ")";
     }
   }
   return widest;

@@ -79,6 +79,7 @@ Fields accuracy_fields(const CellSummary& cell, std::size_t number, std::uint64_
   row.values["false_objects"] = format_count(cell.false_objects);
   row.values["false_triangles"] = format_count(cell.false_triangles);
   row.values["image_px"] = cell.drawn ? count(cell.image_px) : "not drawn";
+  row.values["surface_px"] = cell.paints ? count(cell.surface_px) : "–";
   row.values["jittered"] = lost_rays(cell);
   return row;
 }
@@ -133,6 +134,7 @@ void add_tables(const BlockSummary& block, const DeviceFits& fits, Fields& field
     if (cell.judged) accuracy.push_back(accuracy_fields(cell, i + 1, pixels));
   }
   fields.flag("has_common_pixels", pixels > 0);
+  fields.flag("has_painted", std::ranges::any_of(block.cells, &CellSummary::paints));
   fields.values["pixels"] = format_count(pixels);
   fields.flag("has_speed", !speed.empty());
   fields.flag("has_accuracy", !accuracy.empty());

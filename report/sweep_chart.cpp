@@ -4,8 +4,10 @@
 #include <cmath>
 #include <sstream>
 
+#include "common/judge/metrics.h"
 #include "report/chart_legend.h"
 #include "report/chart_parts.h"
+#include "report/format.h"
 
 namespace vislab {
 namespace {
@@ -22,6 +24,19 @@ constexpr double sidestep = 0.024;  // of the distance between two values
 constexpr const char* limit_style = "dt (2,4) lw 1.2 lc rgb '#777777'";
 constexpr const char* zero_band_colour = "#EEF2F6";
 constexpr int ring = 6;
+
+/// The unit of a metric whose name does not say it; "" of a share or a number of things.
+std::string unit_beside(const std::string& metric) {
+  for (const std::string_view said : {"_px", "_ms", "_us", "bytes"}) {
+    if (metric.ends_with(said)) return {};
+  }
+  for (const Metric& known : metrics()) {
+    if (known.name != metric) continue;
+    if (known.unit == "count" || known.unit == "ratio") return {};
+    return std::string(known.unit);
+  }
+  return {};
+}
 
 class SweepChart {
  public:
@@ -71,7 +86,9 @@ class SweepChart {
   /// Short: the text beside the chart says what ratios are to.
   std::string y_title() const {
     const SweepLimit& limit = result_.sweep.limit;
-    return limit.against ? limit.metric + ", ratio" : result_.sweep.figure_name();
+    if (limit.against) return limit.metric + ", ratio";
+    const std::string unit = limit.is_counter ? "" : unit_beside(limit.metric);
+    return result_.sweep.figure_name() + (unit.empty() ? "" : " (" + unit + ")");
   }
 
   /// How many values apart the labels stand, so that labels do not run into each other.
@@ -101,7 +118,7 @@ class SweepChart {
     x.low = -0.5;
     x.high = values - 0.5;
     for (std::size_t i = 0; i < dial.texts.size(); i += values_per_label(dial)) {
-      x.ticks.emplace_back(static_cast<double>(i), dial.texts[i]);
+      x.ticks.emplace_back(static_cast<double>(i), format_written(dial.texts[i]));
     }
     set_axis(out_, 'x', x);
     set_axis(out_, 'y', axis_);

@@ -8,8 +8,11 @@
 namespace vislab {
 namespace {
 
+const std::string no_break = "\u00A0";  // a number's unit stays beside it
+
 std::string in_unit(const SweepDial& dial, std::size_t value) {
-  return markdown_text(dial.texts[value] + (dial.unit.empty() ? "" : " " + dial.unit));
+  return markdown_text(format_written(dial.texts[value]) +
+                       (dial.unit.empty() ? "" : no_break + dial.unit));
 }
 
 /// "at 4 m", "none from 0.5 to 64 m", or why it cannot be told.
@@ -38,7 +41,8 @@ std::string figure_text(const Sweep& sweep, const SweepVerdict& verdict,
 std::string bound_text(const SweepDial& dial, double bound) {
   const auto found = std::ranges::find(dial.values, bound);
   if (found == dial.values.end()) return format_number(bound);
-  return markdown_text(dial.texts[static_cast<std::size_t>(found - dial.values.begin())]);
+  return markdown_text(
+      format_written(dial.texts[static_cast<std::size_t>(found - dial.values.begin())]));
 }
 
 std::string expectation_text(const SweepDial& dial, const SweepVerdict& verdict) {
@@ -49,8 +53,12 @@ std::string expectation_text(const SweepDial& dial, const SweepVerdict& verdict)
   const std::string range = expected.never ? "never breaks"
                             : low == high  ? "breaks at " + low
                                            : "breaks from " + low + " to " + high;
-  return range + ": " + markdown_text(expected.because) + " (" + markdown_text(expected.source) +
-         ")";
+  std::string text = range + ": " + markdown_text(expected.because) + " (" +
+                     markdown_text(expected.source) + ")";
+  if (verdict.agreement == SweepVerdict::Agreement::differs && !expected.hindsight.empty()) {
+    text += ". In hindsight: " + markdown_text(expected.hindsight);
+  }
+  return text;
 }
 
 std::string agreement_text(const SweepVerdict& verdict) {

@@ -93,13 +93,17 @@ SweepVerdict verdict_on(const Sweep& sweep, const SweepMethod& method, const Cel
   const auto is_worse = [&](double figure, double than) {
     return sweep.limit.at_least ? figure < than : figure > than;
   };
+  // What others are held against has nothing to hold to itself.
+  const bool is_yardstick =
+      sweep.limit.against && &sweep.methods[*sweep.limit.against] == &method;
   verdict.limit = worst_allowed(sweep.limit, verdict.guarantee, points.front().figure, pixels);
   verdict.is_complete = true;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const SweepPoint& point = points[i];
     const bool measured = point.state == State::measured && !std::isnan(point.figure);
     if (!verdict.break_point) {
-      if (point.state == State::failed || (measured && is_worse(point.figure, verdict.limit))) {
+      if (point.state == State::failed ||
+          (measured && !is_yardstick && is_worse(point.figure, verdict.limit))) {
         verdict.break_point = i;
       } else if (!measured) {
         verdict.is_complete = false;

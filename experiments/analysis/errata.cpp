@@ -258,6 +258,12 @@ WrongVariant new_variant(const std::string& name, const std::vector<Erratum>& er
   for (const Erratum& erratum : errata) {
     if (std::ranges::count(erratum.wrong, name) > 0) variant.errata.push_back(&erratum);
   }
+  // A method that is right otherwise does not say what is wrong with this setting of it.
+  const CullerInfo& method = registry.entries().find(parse_chain(name).front().name)->second.info;
+  if (method.guarantee != Guarantee::erroneous && !variant.errata.empty()) {
+    variant.summary = variant.errata.front()->printed;
+    variant.sources = variant.errata.front()->source + ", " + variant.errata.front()->place;
+  }
   return variant;
 }
 

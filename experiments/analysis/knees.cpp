@@ -124,7 +124,7 @@ std::optional<std::size_t> smallest(const std::vector<SizePoint>& points,
 }
 
 /// Fills in what depends on the other points: best, relative, knee. The best of several that are
-/// equally efficient is the first.
+/// equally efficient is the first. One point alone has nothing to be the knee of.
 void find_knee(SizeCurve& curve) {
   std::vector<SizePoint>& points = curve.points;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -151,7 +151,11 @@ void find_knee(SizeCurve& curve) {
     return is_smaller(points[largest], points[value]) ||
            (value > largest && !is_smaller(points[value], points[largest]));
   });
-  curve.knee = smallest(points, curve.may_be_knee);
+  if (curve.measured() < 2) {
+    curve.may_be_knee.clear();
+  } else {
+    curve.knee = smallest(points, curve.may_be_knee);
+  }
 }
 
 SizeCurve curve_of(const SizeSweep& sweep, const SizeMethod& method, std::size_t block,
@@ -240,7 +244,7 @@ std::size_t SizeCurve::measured() const {
 bool SizeResult::was_measured() const {
   return std::ranges::any_of(verdicts, [](const SizeVerdict& verdict) {
     return std::ranges::any_of(verdict.scenes,
-                               [](const SizeCurve& scene) { return scene.measured() > 0; });
+                               [](const SizeCurve& scene) { return scene.measured() > 1; });
   });
 }
 

@@ -32,6 +32,8 @@
 //   breaks = "never"               or [4, 16]: the break point is one of the values in this range
 //   source = "…"                   who reports the failure; the range is this lab's prediction
 //   because = "…"                  what the range follows from, in one sentence
+//   hindsight = "…"                optional: why it may come out otherwise all the same, without
+//                                  figures; told only where it does
 //
 // In the scene, the path, the cullers, the resolution, the seed and draw "${dial}" stands for the
 // dial's value: alone in its quotes for the number, within a longer text for its digits.
@@ -74,6 +76,7 @@ struct SweepExpectation {
   bool never = true;   // it does not break; else it breaks at a value within [low, high]
   double low = 0.0, high = 0.0;
   std::string source, because;
+  std::string hindsight = {};  // "": nothing is known
 };
 
 /// One of the sweep's cullers.

@@ -182,7 +182,7 @@ ResultStore ResultStore::open(fs::path folder) {
 
 void ResultStore::remove_unfinished() const {
   // All are named by hashes, whatever follows these.
-  for (const char* part : {"cells", "sets", "images", "truth", "verdicts"}) {
+  for (const char* part : {"cells", "sets", "images", "truth", "verdicts", "depths"}) {
     remove_temporary(folder_ / part, R"([0-9a-f]{32}(\.[a-z]+)?)");
   }
   remove_temporary(folder_ / "matrices", ".+");

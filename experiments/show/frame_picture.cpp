@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/judge/disputed.h"
 #include "common/render/picture.h"
 #include "common/scene/error.h"
 #include "experiments/context/sources.h"
@@ -28,6 +29,27 @@ std::vector<std::uint8_t> flags_of(const VisibleSet& set, std::size_t triangles)
     std::fill_n(flags.begin() + run.first, run.count, std::uint8_t{1});
   }
   return flags;
+}
+
+/// The pixels that the verdict finds wrong, where it names all of them; else those that were lost
+/// away from the edges of what was lost: what is seen there instead would have to be traced again.
+std::vector<glm::ivec2> wrong_pixels(const Scene& scene, const Frame& frame,
+                                     const FrameTruth& truth, const VisibleSet& kept,
+                                     const Verdict& verdict) {
+  std::vector<glm::ivec2> pixels;
+  if (verdict.wrong_px.size() == verdict.false_px) {
+    for (const auto& [x, y] : verdict.wrong_px) pixels.emplace_back(x, y);
+    return pixels;
+  }
+  Disputes disputes(frame, scene);
+  for (std::size_t i = 0; i < truth.ids.size(); ++i) {
+    const TriangleId lost = truth.ids[i];
+    if (lost == none_id || kept.contains(lost)) continue;
+    const glm::ivec2 pixel(static_cast<int>(i) % truth.viewport.width,
+                           static_cast<int>(i) / truth.viewport.width);
+    if (!disputes(glm::dvec2(pixel) + 0.5, lost, none_id)) pixels.push_back(pixel);
+  }
+  return pixels;
 }
 
 }  // namespace
@@ -67,7 +89,7 @@ void write_frame_picture(const Scene& scene, const Frame& frame, const FrameTrut
   const std::uint64_t wrong =
       granularity == Granularity::object ? verdict.false_objects : verdict.false_triangles;
   input.excused = lost - std::min(lost, wrong);
-  for (const auto& [x, y] : verdict.wrong_px) input.wrong_pixels.emplace_back(x, y);
+  input.wrong_pixels = wrong_pixels(scene, frame, truth, kept, verdict);
   write_png(file, render_picture(input));
 }
 

@@ -19,15 +19,20 @@ struct StoredBlock {
   std::set<Place> places;
 };
 
-BlockName name_of(const Block& block) {
-  return {block.scene,  block.path, block.viewport.width, block.viewport.height, block.frames,
-          block.device, block.seed};
+BlockName name_of(const Block& block, const OwnPaths& paths) {
+  return {block.scene,
+          paths.resolved(block.scene, block.path),
+          block.viewport.width,
+          block.viewport.height,
+          block.frames,
+          block.device,
+          block.seed};
 }
 
 /// The second name is of blocks that take as many frames as the path has.
-std::pair<BlockName, BlockName> names_of(const ResultCell& cell) {
+std::pair<BlockName, BlockName> names_of(const ResultCell& cell, const OwnPaths& paths) {
   BlockName name{cell.scene_source,
-                 cell.path_source,
+                 paths.resolved(cell.scene_source, cell.path_source),
                  cell.key.viewport.width,
                  cell.key.viewport.height,
                  static_cast<int>(cell.frames.size()),
@@ -45,10 +50,10 @@ std::set<Place> planned_places(const Block& block) {
 }
 
 MatrixShare share_of(const Matrix& matrix, const std::map<BlockName, StoredBlock>& stored,
-                     const Registry& cullers) {
+                     const Registry& cullers, const OwnPaths& paths) {
   MatrixShare share{matrix.name, 0, 0, {}};
   for (const Block& block : matrix.blocks) {
-    const auto found = stored.find(name_of(block));
+    const auto found = stored.find(name_of(block, paths));
     for (const Place& place : planned_places(block)) {
       ++share.planned;
       if (found != stored.end() && found->second.places.contains(place)) {
@@ -64,11 +69,11 @@ MatrixShare share_of(const Matrix& matrix, const std::map<BlockName, StoredBlock
 }  // namespace
 
 PlannedGaps find_planned_gaps(const std::vector<Matrix>& matrices, const std::set<std::string>& run,
-                              const std::vector<const ResultCell*>& cells,
-                              const Registry& cullers) {
+                              const std::vector<const ResultCell*>& cells, const Registry& cullers,
+                              const OwnPaths& paths) {
   std::map<BlockName, StoredBlock> stored;
   for (const ResultCell* cell : cells) {
-    const auto [name, all] = names_of(*cell);
+    const auto [name, all] = names_of(*cell, paths);
     for (const BlockName& one : {name, all}) {
       stored[one].ids.push_back(cell->key.id());
       stored[one].places.emplace(cell->key.chain, cell->key.replicate);
@@ -78,13 +83,13 @@ PlannedGaps find_planned_gaps(const std::vector<Matrix>& matrices, const std::se
   std::set<std::pair<BlockName, Place>> told;  // several matrices may plan the same
   for (const Matrix& matrix : matrices) {
     if (!run.contains(matrix.name)) continue;
-    gaps.matrices.push_back(share_of(matrix, stored, cullers));
+    gaps.matrices.push_back(share_of(matrix, stored, cullers, paths));
     const std::string reason = "the matrix " + matrix.name +
-                               " plans it, and no cell of it is in the results that was measured "
-                               "with the sources as they are; 'vislab run " +
-                               matrix.name + "' measures it";
+                               " plans this, and nothing of it was measured with the sources as "
+                               "they are ('vislab run " +
+                               matrix.name + "')";
     for (const Block& block : matrix.blocks) {
-      const BlockName name = name_of(block);
+      const BlockName name = name_of(block, paths);
       const auto found = stored.find(name);
       if (found == stored.end()) {
         if (told.emplace(name, Place()).second) gaps.blocks.push_back({block.title(), reason});

@@ -10,6 +10,7 @@
 #include "common/culler/registry.h"
 #include "experiments/analysis/matrix_share.h"
 #include "experiments/matrix/matrix.h"
+#include "experiments/matrix/own_paths.h"
 #include "experiments/results/cell.h"
 
 namespace vislab {
@@ -31,7 +32,8 @@ struct PlannedGaps {
 /// What the matrices that were `run`, by name, plan and `cells`, those that count, do not hold. A
 /// cell belongs to a planned block if scene, path, size, frames, device and seed are the same.
 PlannedGaps find_planned_gaps(const std::vector<Matrix>& matrices, const std::set<std::string>& run,
-                              const std::vector<const ResultCell*>& cells, const Registry& cullers);
+                              const std::vector<const ResultCell*>& cells, const Registry& cullers,
+                              const OwnPaths& paths);
 
 /// All matrices of the folder; one that cannot be read says nothing of gaps.
 std::vector<Matrix> readable_matrices(const std::filesystem::path& folder, const Registry& cullers);

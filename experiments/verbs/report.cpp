@@ -1,5 +1,6 @@
 #include "report/report.h"
 
+#include <algorithm>
 #include <iostream>
 #include <tuple>
 
@@ -8,12 +9,12 @@
 #include "experiments/devices/device_spec.h"
 #include "experiments/results/store.h"
 #include "experiments/run/path_run.h"
-#include "experiments/show/depth_complexity_picture.h"
 #include "experiments/show/frame_picture.h"
 #include "experiments/show/hidden_share.h"
 #include "experiments/show/kinds_picture.h"
 #include "experiments/show/plan_picture.h"
 #include "experiments/show/query_pictures.h"
+#include "experiments/show/stored_depth_complexity.h"
 #include "experiments/show/surface_pictures.h"
 #include "experiments/verbs/missing_cells.h"
 #include "experiments/verbs/present_results.h"
@@ -23,24 +24,6 @@
 
 namespace vislab {
 namespace {
-
-DepthComplexityTable stored_depth_complexity(StoredScenes& scenes, const BlockSummary& block,
-                                             const std::filesystem::path& file) {
-  if (block.cells.empty()) throw InputError("block " + block.scene + " has no cell");
-  const StoredScene stored = scenes.of(block, block.cells.front().id);
-  const auto third = static_cast<std::size_t>(block.frames) / 3;
-  DepthComplexityTable table{};
-  SceneState state(stored.scene);
-  for_each_frame(stored.path, state, block.viewport,
-                 [&](std::size_t index, const Frame& frame, const Changes&) {
-                   if (index != third) return;
-                   table = measure_depth_complexity(
-                       stored.scene, frame, DepthComplexity::rays,
-                       block.scene + ", depth complexity (rays), frame " + std::to_string(third),
-                       file);
-                 });
-  return table;
-}
 
 /// From the truth that the block was judged by.
 PersistenceCounts stored_persistence(const std::filesystem::path& results, StoredScenes& scenes,
@@ -80,6 +63,15 @@ std::vector<double> stored_frame_times(const std::filesystem::path& results,
   return times;
 }
 
+/// Did a query about several boxes find nothing to be seen?
+bool shows_joint_queries(const RecordedFrame& row) {
+  return std::ranges::any_of(row.states, [](const RecordedState& state) {
+    return std::ranges::any_of(state.queries, [](const RecordedQuery& query) {
+      return query.boxes.size() > 1 && query.samples == 0U;
+    });
+  });
+}
+
 /// Draws what methods do in the frame after a third of the block's path, on its own device; time
 /// lines, of another device than a modelled one, on the first preset.
 std::string stored_query_picture(const Lab& lab, StoredScenes& scenes, const BlockSummary& block,
@@ -110,6 +102,10 @@ std::string stored_query_picture(const Lab& lab, StoredScenes& scenes, const Blo
   frame.objects = state.view();
   const std::string place =
       block.scene + ", " + block.path + ", frame " + std::to_string(frame_index);
+  if (picture == QueryPicture::boxes && std::ranges::none_of(rows, shows_joint_queries)) {
+    throw InputError("in frame " + std::to_string(frame_index) +
+                     " no query about several boxes found nothing to be seen");
+  }
   write_query_picture(picture, stored.scene, frame, place, spec.text, rows, file);
   return place + ", on " + spec.text;
 }
@@ -121,7 +117,7 @@ PlannedGaps gaps_of(const Lab& lab, const std::filesystem::path& results,
   for (const JudgedCell& judged : cells) present.push_back(&judged.cell);
   std::vector<Matrix> matrices = readable_matrices(lab.matrices, lab.cullers);
   for (Matrix& matrix : matrices) leave_out_unfetched(matrix, lab.data);
-  return find_planned_gaps(matrices, run, present, lab.cullers);
+  return find_planned_gaps(matrices, run, present, lab.cullers, OwnPaths(lab.data));
 }
 
 }  // namespace
@@ -146,7 +142,7 @@ int report(const Lab& lab, const std::filesystem::path& results,
     return pictures.write(block, cell, file);
   };
   input.depth_complexity = [&](const BlockSummary& block, const std::filesystem::path& file) {
-    return stored_depth_complexity(scenes, block, file);
+    return stored_depth_complexity(results, scenes, block, file);
   };
   input.persistence = [&](const BlockSummary& block) {
     return stored_persistence(results, scenes, block);

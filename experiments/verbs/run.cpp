@@ -5,6 +5,7 @@
 
 #include "common/scene/error.h"
 #include "experiments/devices/device_spec.h"
+#include "experiments/matrix/own_paths.h"
 #include "experiments/matrix/resolution.h"
 #include "experiments/matrix/size_sweep.h"
 #include "experiments/results/folder_lock.h"
@@ -221,11 +222,13 @@ void print_results(const Lab& lab, const RunCall& call, const std::set<std::stri
 /// How far a cell of a plan is. Scenes are not loaded: one that was changed since under the same
 /// name is found out by the run.
 std::string status_of(const Block& block, const BlockCuller& culler,
-                      const std::vector<JudgedCell>& stored) {
+                      const std::vector<JudgedCell>& stored, const OwnPaths& paths) {
+  const std::string path = paths.resolved(block.scene, block.path);
   for (const JudgedCell& judged : stored) {
     const ResultCell& cell = judged.cell;
     if (cell.key.chain != culler.chain || cell.key.replicate != culler.replicate ||
-        cell.scene_source != block.scene || cell.path_source != block.path ||
+        cell.scene_source != block.scene ||
+        paths.resolved(cell.scene_source, cell.path_source) != path ||
         cell.key.viewport != block.viewport || cell.key.seed != block.seed ||
         cell.key.threads != block.threads) {
       continue;
@@ -286,6 +289,7 @@ int plan(const Lab& lab, const RunCall& call) {
   std::vector<JudgedCell> stored;
   if (std::filesystem::exists(call.results / "cells"))
     stored = present_cells(call.results, lab.cullers);
+  const OwnPaths paths(lab.data);
   const std::vector<Block> blocks = work_of(lab, call).blocks;
   for (const Block& block : blocks) {
     require_described("scene or file", block.scene, lab.data.data / "scenes");
@@ -301,7 +305,7 @@ int plan(const Lab& lab, const RunCall& call) {
                  static_cast<std::uint64_t>(block.frames), static_cast<std::uint64_t>(block.rounds),
                  block.device, static_cast<std::uint64_t>(block.threads),
                  lab.cullers.short_name(culler.chain) + (culler.replicate > 0 ? " (again)" : ""),
-                 status_of(block, culler, stored)});
+                 status_of(block, culler, stored, paths)});
     }
   }
   table.print(std::cout, call.json);

@@ -96,6 +96,10 @@ TEST(BreakPoint, MayBeWhereAMethodIsNoBetterThanAnother) {
   EXPECT_EQ(result.verdicts[0].break_point, 3U);
   EXPECT_DOUBLE_EQ(result.verdicts[0].points[1].figure, 0.75);
   EXPECT_FALSE(result.verdicts[1].break_point) << "a method costs as much as itself";
+  sweep.limit.at_most = 0.6;
+  const SweepResult half = find_break_points(sweep, cell);
+  EXPECT_EQ(half.verdicts[0].break_point, 1U);
+  EXPECT_FALSE(half.verdicts[1].break_point) << "nothing can take a share of itself";
 }
 
 TEST(BreakPoint, ApproximateMethodsMayLoseOneInAHundredPixels) {

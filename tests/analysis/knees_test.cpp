@@ -90,6 +90,14 @@ TEST(Knees, TheKneeIsTheSmallestModelWithinFivePercentOfTheBest) {
   EXPECT_NEAR(curve.points[0].relative, 0.75, 1e-12);
 }
 
+TEST(Knees, OneModelAloneIsNoKnee) {
+  SizeCurve curve = curve_of({{0.60, 10, 0}, {0.77, 20, 0}});
+  EXPECT_TRUE(curve.knee);
+  curve = curve_of({{0.60, 10, 0}});
+  EXPECT_FALSE(curve.knee);
+  EXPECT_TRUE(curve.may_be_knee.empty());
+}
+
 TEST(Knees, AModelThatIsWrongInMorePixelsThanTheBestIsNoKnee) {
   const SizeCurve curve = curve_of({{0.79, 10, 3}, {0.78, 20, 1}, {0.80, 40, 1}, {0.80, 80, 0}});
   EXPECT_EQ(*curve.knee, 1U);

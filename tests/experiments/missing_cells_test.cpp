@@ -45,12 +45,21 @@ class MissingCells : public ::testing::Test {
                    const std::set<std::string>& run = {"made_up"}) const {
     std::vector<const ResultCell*> pointers;
     for (const ResultCell& cell : cells) pointers.push_back(&cell);
-    return find_planned_gaps({matrix_}, run, pointers, registry_);
+    return find_planned_gaps({matrix_}, run, pointers, registry_, paths_);
   }
 
   Registry registry_;
   Matrix matrix_;
+  OwnPaths paths_{std::map<std::string, std::string>{{"other_scene", "own_walk"}}};
 };
+
+TEST_F(MissingCells, APathThatIsTheScenesOwnMayBeNamedOrNot) {
+  std::vector<ResultCell> cells = everything();
+  for (ResultCell& cell : cells) cell.path_source = "own_walk";
+  EXPECT_EQ(gaps(cells).blocks.size(), 1U) << "own_walk is the path of other_scene only";
+  matrix_.blocks[1].path = "own_walk";
+  EXPECT_TRUE(gaps(everything()).blocks.empty());
+}
 
 TEST_F(MissingCells, NothingIsMissingWhereAllIsThere) {
   const PlannedGaps found = gaps(everything());

@@ -282,5 +282,19 @@ TEST_F(SweepFileTest, EveryCullerOfTheRegistryStandsInASweepOrHasAReason) {
   }
 }
 
+TEST_F(SweepFileTest, FiguresAreMeasuredAndNotWrittenIntoTheRepositorysFiles) {
+  const std::vector<Sweep> sweeps = load_sweeps(
+      std::filesystem::path(VISLAB_SOURCE_DIR) / "experiments" / "stress", folder_.path(), registry_);
+  for (const Sweep& sweep : sweeps) {
+    for (const SweepMethod& method : sweep.methods) {
+      if (!method.expectation) continue;
+      EXPECT_EQ(method.expectation->because.find("measured"), std::string::npos)
+          << sweep.name << ": because says what follows, before anything is measured";
+      EXPECT_EQ(method.expectation->hindsight.find_first_of("0123456789"), std::string::npos)
+          << sweep.name << ": the report has the figures of its own cells";
+    }
+  }
+}
+
 }  // namespace
 }  // namespace vislab

@@ -43,7 +43,7 @@ TEST(SweepSection, ASweepInWhichNothingBrokeHasARowOnly) {
   add_sweep_fields({result}, fields);
   EXPECT_TRUE(fields.lists["sweeps"].empty());
   ASSERT_EQ(fields.lists["quiet_sweeps"].size(), 1U);
-  EXPECT_EQ(fields.lists["quiet_sweeps"][0].values["dial"], "edge from 1 m to 8 m");
+  EXPECT_EQ(fields.lists["quiet_sweeps"][0].values["dial"], "edge from 1\u00A0m to 8\u00A0m");
   EXPECT_EQ(fields.lists["quiet_sweeps"][0].values["methods"], "`frustum.flat`");
   result.verdicts[0].agreement = SweepVerdict::Agreement::differs;
   EXPECT_TRUE(is_shown(result));
@@ -54,11 +54,11 @@ TEST(SweepSection, SaysWhereEachMethodBreaksAndWhatWasExpected) {
   ASSERT_EQ(fields.size(), 1U);
   const auto& rows = fields[0].lists.at("rows");
   ASSERT_EQ(rows.size(), 2U);
-  EXPECT_EQ(rows[0].values.at("breaks"), "none within 1 m to 8 m");
+  EXPECT_EQ(rows[0].values.at("breaks"), "none within 1\u00A0m to 8\u00A0m");
   EXPECT_NE(rows[0].values.at("expected").find("never breaks: planes hold it"), std::string::npos);
   EXPECT_EQ(rows[0].values.at("agreement"), "agrees");
-  EXPECT_EQ(rows[1].values.at("breaks"), "**at 8 m**");
-  EXPECT_EQ(rows[1].values.at("worst"), "77.0 at 8 m");
+  EXPECT_EQ(rows[1].values.at("breaks"), "**at 8\u00A0m**");
+  EXPECT_EQ(rows[1].values.at("worst"), "77.0 at 8\u00A0m");
   EXPECT_EQ(rows[1].values.at("agreement"), "–");
 }
 
@@ -70,9 +70,9 @@ TEST(SweepSection, NamesExpectedValuesAsTheDialHasThem) {
   expected.low = 1e-8;
   expected.high = 1e-6;
   const auto text = [&] { return sweep_fields({result})[0].lists["rows"][0].values["expected"]; };
-  EXPECT_NE(text().find("breaks from 1e\\-08 to 1e\\-06: "), std::string::npos) << text();
+  EXPECT_NE(text().find("breaks from 10⁻⁸ to 10⁻⁶: "), std::string::npos) << text();
   expected.high = expected.low;
-  EXPECT_NE(text().find("breaks at 1e\\-08: "), std::string::npos) << text();
+  EXPECT_NE(text().find("breaks at 10⁻⁸: "), std::string::npos) << text();
 }
 
 TEST(SweepSection, SweepsThatWereNotRunAreLeftOut) {

@@ -48,7 +48,16 @@ TEST(Format, BytesHaveAUnit) {
 
 TEST(Format, TextOfResultsIsNoMarkup) {
   EXPECT_EQ(markdown_text("a*b [c]\n@d"), "a\\*b \\[c\\] \\@d");
+  EXPECT_EQ(markdown_text("a `b*c` `d"), "a `b*c` \\`d") << "names in backticks are code";
   EXPECT_EQ(markdown_code("a`b"), "`a b`");
+}
+
+TEST(Format, NumbersWithAnExponentAreWrittenAsPowersOfTen) {
+  EXPECT_EQ(format_written("1e-06"), "10⁻⁶");
+  EXPECT_EQ(format_written("3e-04"), "3\u202F×\u202F10⁻⁴");
+  EXPECT_EQ(format_written("1e+20"), "10²⁰");
+  EXPECT_EQ(format_written("0.01"), "0.01");
+  EXPECT_EQ(format_written("level"), "level");
 }
 
 }  // namespace

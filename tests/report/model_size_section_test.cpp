@@ -73,7 +73,7 @@ TEST(ModelSizeSection, ADefaultThatMayBeTheKneeIsSaidToBeSoBesideTheOthers) {
   const std::string text = section_of({result});
   EXPECT_NE(text.find("| leaf size | `test.tree` | 8 · 8 | 8 or 1 | 1 |"), std::string::npos)
       << text;
-  EXPECT_NE(text.find("| 1 (may be the knee) (default) |"), std::string::npos) << text;
+  EXPECT_NE(text.find("| **1** (may be the knee) (default) |"), std::string::npos) << text;
   EXPECT_NE(text.find("may be the knee |"), std::string::npos) << text;
 }
 
@@ -84,6 +84,16 @@ TEST(ModelSizeSection, AMissingCellIsAGapWithItsReason) {
   const std::string text = section_of({result});
   EXPECT_NE(text.find("hill\\: not run"), std::string::npos) << text;
   EXPECT_FALSE(size_charts_script({result}).empty());
+}
+
+TEST(ModelSizeSection, OfAMethodThatWasNotMeasuredThereIsNoCurve) {
+  SizeResult result = fabricated_sizes();
+  result.verdicts.push_back(result.verdicts[0]);
+  result.verdicts[1].method.culler = "test.other";
+  result.verdicts[1].common.knee.reset();
+  const std::string text = section_of({result});
+  EXPECT_NE(text.find("`test.other`"), std::string::npos) << "it stands in the summary";
+  EXPECT_EQ(text.find("of `test.other`:"), std::string::npos) << text;
 }
 
 TEST(ModelSizeSection, IsEmptyWithoutASweepThatWasMeasured) {
