@@ -45,16 +45,18 @@ std::string place_of(const PublishedRow& row, const OwnFigure& own) {
 std::string own_text(const PublishedRow& row, const OwnFigure& own) {
   if (own.cell == nullptr) return "–";
   if (row.is_share()) return format_percent(own.ratio.value);
-  if (!row.compares) return format_number(own.ratio.value);
-  return own.ratio.low < own.ratio.high ? format_estimate(own.ratio)
-                                        : format_number(own.ratio.value);
+  if (row.compares && own.ratio.low < own.ratio.high) return format_estimate(own.ratio);
+  const double low = row.accept.low;
+  const bool is_below = own.ratio.value < low;
+  return format_apart(own.ratio.value, is_below ? low : row.accept.high);
 }
 
 /// "0.2 to 0.5", "at least 1", "at most 1": what of ours confirms the claim.
-std::string accept_text(const PublishedRow& row) {
+std::string accept_text(const PublishedRow& row, const OwnFigure& own) {
   if (!row.cannot_be_told.empty()) return "–";
   const auto text = [&](double bound) {
-    return row.is_share() ? format_percent(bound) : format_number(bound);
+    if (row.is_share()) return format_percent(bound);
+    return own.cell == nullptr ? format_number(bound) : format_apart(bound, own.ratio.value);
   };
   const double low = row.accept.low;
   const double high = row.accept.high;
@@ -111,7 +113,7 @@ Fields untold_fields(const PublishedRow& row) {
 Fields row_fields(const PublishedRow& row, const OwnFigure& own) {
   Fields fields = claim_fields(row);
   fields.values["verdict"] = verdict_text(verdict_of(row, own));
-  fields.values["accept"] = accept_text(row);
+  fields.values["accept"] = accept_text(row, own);
   fields.values["own"] = own_text(row, own);
   fields.values["scene"] = markdown_text(place_of(row, own));
   fields.values["method"] = method_text(row);

@@ -48,6 +48,16 @@ std::string format_number(double value) {
   return with_decimals(value, decimals_for(value));
 }
 
+std::string format_apart(double value, double other) {
+  if (!std::isfinite(value) || value == other) return format_number(value);
+  constexpr int most = 8;
+  int decimals = decimals_for(value);
+  while (decimals < most && with_decimals(value, decimals) == with_decimals(other, decimals)) {
+    ++decimals;
+  }
+  return decimals == decimals_for(value) ? format_number(value) : with_decimals(value, decimals);
+}
+
 std::string format_rounded(double value) {
   if (!std::isfinite(value) || std::fabs(value) < 1000.0) return format_number(value);
   const double unit = std::pow(10.0, std::floor(std::log10(std::fabs(value))) - 2.0);

@@ -16,6 +16,10 @@ std::string format_count(std::uint64_t count);
 /// "1,230", "< 0.0001"; "–" for NaN and infinity.
 std::string format_number(double value);
 
+/// As format_number, with as many more decimals as tell it from `other`, up to eight: 0.9999 from 1
+/// as "0.9999".
+std::string format_apart(double value, double other);
+
 /// As format_number, but large values are rounded to three significant digits as well: 12345.6 as
 /// "12,300".
 std::string format_rounded(double value);

@@ -20,7 +20,8 @@ constexpr std::size_t least_batches = 3;
 constexpr std::size_t most_retest_charts = 4;
 
 std::string title_of(const BlockSummary& block) {
-  return block.scene + (block.path.empty() ? "" : ", " + block.path) + ", " + block.device;
+  return block.scene + (block.path.empty() ? "" : ", " + block.path) + ", " + block.device +
+         (block.seed == 1 ? "" : ", seed " + std::to_string(block.seed));
 }
 
 /// A canonical chain cut where the value of a parameter of one of its stages stands.

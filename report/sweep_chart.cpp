@@ -14,7 +14,9 @@ namespace {
 
 using namespace chart;
 
-constexpr double panel_left = 92.0, panel_width = 568.0, panel_height = 150.0;
+constexpr double panel_left = 92.0, panel_width = 568.0;
+constexpr std::size_t most_in_low_panel = 7;  // lines
+constexpr double low_panel = 150.0, high_panel = 210.0;
 constexpr double y_title_left = 10.0;
 constexpr double axis_height = 50.0;  // tick labels and title below the panel
 constexpr double top_margin = 10.0;
@@ -64,7 +66,8 @@ class SweepChart {
 
   void write(const std::filesystem::path& file) {
     const double bottom = legend_.height() + axis_height;
-    height_ = bottom + panel_height + top_margin;
+    panel_height_ = has_many_lines(result_) ? high_panel : low_panel;
+    height_ = bottom + panel_height_ + top_margin;
     start_chart(out_, file, height_);
     write_panel(bottom);
     legend_.write(out_, height_);
@@ -112,7 +115,7 @@ class SweepChart {
          << "unset title\nunset ylabel\nset xlabel "
          << quoted(dial.name + (dial.unit.empty() ? "" : " (" + dial.unit + ")"))
          << " offset 0,0.5\nset label " << quoted(y_title()) << " at screen "
-         << y_title_left / chart_width << ',' << (bottom + 0.5 * panel_height) / height_
+         << y_title_left / chart_width << ',' << (bottom + 0.5 * panel_height_) / height_
          << " center rotate by 90\n";
     ChartAxis x;
     x.low = -0.5;
@@ -122,7 +125,7 @@ class SweepChart {
     }
     set_axis(out_, 'x', x);
     set_axis(out_, 'y', axis_);
-    set_margins(out_, panel_left, bottom, panel_width, panel_height, height_);
+    set_margins(out_, panel_left, bottom, panel_width, panel_height_, height_);
     if (axis_.logarithmic && axis_.zero_band_top > 0.0) {
       out_ << "set object rectangle from graph 0, graph 0 to graph 1, first " << axis_.zero_band_top
            << " fc rgb '" << zero_band_colour << "' fs solid noborder behind\n";
@@ -182,7 +185,7 @@ class SweepChart {
   double common_limit_ = 0.0;
   ChartAxis axis_;
   Legend legend_;
-  double height_ = 0.0;
+  double height_ = 0.0, panel_height_ = 0.0;
 };
 
 }  // namespace
@@ -191,6 +194,8 @@ bool has_sweep_chart(const SweepResult& result) {
   return std::ranges::any_of(result.verdicts,
                              [](const SweepVerdict& verdict) { return verdict.worst.has_value(); });
 }
+
+bool has_many_lines(const SweepResult& result) { return result.verdicts.size() > most_in_low_panel; }
 
 std::string sweep_chart_script(const SweepResult& result, const std::filesystem::path& file) {
   std::ostringstream script;

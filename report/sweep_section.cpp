@@ -154,6 +154,7 @@ void add_sweep_fields(const std::vector<SweepResult>& sweeps, Fields& fields) {
     entry.values["limit"] = limit_text(result.sweep);
     entry.values["file"] = sweep_chart_file_name(i);
     entry.flag("chart", has_sweep_chart(result));
+    entry.values["size"] = has_many_lines(result) ? "" : " .low";
     for (const SweepVerdict& verdict : result.verdicts) {
       entry.lists["rows"].push_back(method_row(result.sweep, verdict));
     }

@@ -52,6 +52,14 @@ TEST(Format, TextOfResultsIsNoMarkup) {
   EXPECT_EQ(markdown_code("a`b"), "`a b`");
 }
 
+TEST(Format, NumbersThatAreNearAnotherHaveTheDigitsThatTellThemApart) {
+  EXPECT_EQ(format_apart(0.99991, 1.0), "0.9999");
+  EXPECT_EQ(format_apart(1.0004, 1.0), "1.0004");
+  EXPECT_EQ(format_apart(1.0, 1.0004), "1.0000");
+  EXPECT_EQ(format_apart(1.5, 1.0), "1.50");
+  EXPECT_EQ(format_apart(1.0, 1.0), "1.00");
+}
+
 TEST(Format, NumbersWithAnExponentAreWrittenAsPowersOfTen) {
   EXPECT_EQ(format_written("1e-06"), "10⁻⁶");
   EXPECT_EQ(format_written("3e-04"), "3\u202F×\u202F10⁻⁴");
