@@ -19,9 +19,9 @@ namespace {
 using namespace chart;
 
 // Everything in units of the drawing (1 unit = 1/4 mm as shown), y upwards.
-constexpr double panel_left[2] = {92.0, 414.0};
-constexpr double panel_width = 256.0;
-constexpr double y_title_distance[2] = {82.0, 55.0};  // from the panel's left
+constexpr double panel_left[2] = {92.0, 424.0};
+constexpr double panel_width = 248.0;
+constexpr double y_title_distance[2] = {82.0, 46.0};  // from the panel's left
 constexpr double usual_height = 360.0;                // more if the legend is long
 constexpr double usual_legend_height = 84.0;
 constexpr double top_margin = 22.0;

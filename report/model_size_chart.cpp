@@ -13,7 +13,7 @@ namespace {
 
 using namespace chart;
 
-constexpr double panel_left = 74.0, panel_gap = 62.0, panel_height = 130.0;
+constexpr double panel_left = 74.0, panel_gap = 74.0, panel_height = 130.0;
 constexpr double right_margin = 16.0, top_margin = 10.0;
 constexpr double axis_height = 48.0;  // tick labels and title below a panel
 constexpr double y_title_offset = 58.0;
