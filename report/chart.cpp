@@ -388,7 +388,8 @@ class ChartWriter {
       if (!label.is_legible) continue;  // symbol and colour are in the legend
       if (label.leader) write_leader(requests[i], label);
       out_ << "set label " << quoted(texts[i]) << " at screen " << label.x / chart_width << ','
-           << label.y / chart_height_ << " center font ',10' textcolor rgb '" << colours[i] << "' front\n";
+           << label.y / chart_height_ << " center font ',10' textcolor rgb '" << colours[i]
+           << "' front\n";
     }
   }
 

@@ -60,11 +60,10 @@ std::ptrdiff_t crossings(const ChartBox& box, const std::optional<Leader>& leade
   std::ptrdiff_t count =
       std::ranges::count_if(leaders, [&](const Leader& other) { return crosses(other, box); });
   if (!leader) return count;
-  count += std::ranges::count_if(labels,
-                                 [&](const ChartBox& label) { return crosses(*leader, label); });
-  return count + std::ranges::count_if(leaders, [&](const Leader& other) {
-           return crosses(*leader, other);
-         });
+  count +=
+      std::ranges::count_if(labels, [&](const ChartBox& label) { return crosses(*leader, label); });
+  return count + std::ranges::count_if(
+                     leaders, [&](const Leader& other) { return crosses(*leader, other); });
 }
 
 }  // namespace
@@ -110,9 +109,9 @@ std::vector<PlacedLabel> place_labels(const std::vector<LabelRequest>& requests,
                             crossing_px2 * static_cast<double>(crossed);
         if (cost < least) {
           least = cost;
-          best = {x, y, has_leader,
-                  outside == 0.0 && on_labels == 0.0 && crossed == 0 &&
-                      covered <= most_covered * area};
+          best = {
+              x, y, has_leader,
+              outside == 0.0 && on_labels == 0.0 && crossed == 0 && covered <= most_covered * area};
         }
       }
     }

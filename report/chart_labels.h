@@ -27,8 +27,8 @@ struct LabelRequest {
 
 /// One label a request, inside `frame` and off the `obstacles` (marks, error bars) where that can
 /// be done. Greedy in the order of requests; each takes the free place nearest to its point, else
-/// the least covered one. Legible labels never overlap each other, nor does the line that joins one to
-/// its point cross another or its line. O(requests × (requests + obstacles)).
+/// the least covered one. Legible labels never overlap each other, nor does the line that joins one
+/// to its point cross another or its line. O(requests × (requests + obstacles)).
 std::vector<PlacedLabel> place_labels(const std::vector<LabelRequest>& requests,
                                       const std::vector<ChartBox>& obstacles,
                                       const ChartBox& frame);

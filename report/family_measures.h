@@ -42,7 +42,7 @@ struct FamilyOn {
   /// Without errors and not wrong on purpose: its last stage takes the least share of the time, or
   /// where nothing is drawn, leaves the least share of the triangles. Null: there is none.
   const FamilyMethod* best = nullptr;
-  const CellSummary* worst = nullptr;  // with the most false pixels; null: all have none
+  const CellSummary* worst = nullptr;       // with the most false pixels; null: all have none
   const CellSummary* most_wrong = nullptr;  // as `worst`, by wrong_pixels()
   std::size_t erring = 0;
 

@@ -42,8 +42,8 @@ std::string format_bytes(std::uint64_t bytes);
 /// A small number as "1.2 × 10^−8^" in Markdown.
 std::string format_scientific(double value);
 
-/// A number as it was written, "3e-04" as "3 × 10⁻⁴", so that no line breaks at its hyphen; "0.01" as
-/// it is.
+/// A number as it was written, "3e-04" as "3 × 10⁻⁴", so that no line breaks at its hyphen; "0.01"
+/// as it is.
 std::string format_written(std::string_view number);
 
 /// Text from results, so that no character of it acts as markup, but names in backticks, which

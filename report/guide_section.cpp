@@ -79,12 +79,12 @@ std::string advice_text(const GuideAdvice& advice) {
                                  ? "the one scene and path"
                                  : "all " + std::to_string(advice.blocks) + " scenes and paths";
   const auto wins = static_cast<std::size_t>(choice.wins);
-  std::string text =
-      advice.eligible == 1
-          ? "On " + places + group + " there is one method to choose: " +
-                markdown_code(choice.culler)
-          : "Of the " + std::to_string(advice.eligible) + " methods to choose from on " + places +
-                group + ", take " + markdown_code(choice.culler);
+  std::string text = advice.eligible == 1
+                         ? "On " + places + group +
+                               " there is one method to choose: " + markdown_code(choice.culler)
+                         : "Of the " + std::to_string(advice.eligible) +
+                               " methods to choose from on " + places + group + ", take " +
+                               markdown_code(choice.culler);
   if (choice.guarantee != Guarantee::conservative) {
     text += " (which promises no more than *" + std::string(to_string(choice.guarantee)) + "*)";
   }

@@ -19,7 +19,7 @@ constexpr double left_margin = 62.0, right_margin = 14.0, column_gap = 18.0;
 constexpr double panel_height = 150.0, panel_pitch = 206.0;  // with its title and ticks
 constexpr double axis_height = 50.0, top_margin = 26.0;
 constexpr std::size_t most_in_two_columns = 4;  // panels; more stand in three
-constexpr double last_nines = 4.0;  // where shares of 1 are drawn
+constexpr double last_nines = 4.0;              // where shares of 1 are drawn
 /// Lines that lie on each other are told apart by moving each a little along the time.
 constexpr double sidestep = 0.04;
 /// Long times are pooled, first to last, frames: cases get few.

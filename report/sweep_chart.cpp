@@ -195,7 +195,9 @@ bool has_sweep_chart(const SweepResult& result) {
                              [](const SweepVerdict& verdict) { return verdict.worst.has_value(); });
 }
 
-bool has_many_lines(const SweepResult& result) { return result.verdicts.size() > most_in_low_panel; }
+bool has_many_lines(const SweepResult& result) {
+  return result.verdicts.size() > most_in_low_panel;
+}
 
 std::string sweep_chart_script(const SweepResult& result, const std::filesystem::path& file) {
   std::ostringstream script;

@@ -53,8 +53,8 @@ std::string expectation_text(const SweepDial& dial, const SweepVerdict& verdict)
   const std::string range = expected.never ? "never breaks"
                             : low == high  ? "breaks at " + low
                                            : "breaks from " + low + " to " + high;
-  std::string text = range + ": " + markdown_text(expected.because) + " (" +
-                     markdown_text(expected.source) + ")";
+  std::string text =
+      range + ": " + markdown_text(expected.because) + " (" + markdown_text(expected.source) + ")";
   if (verdict.agreement == SweepVerdict::Agreement::differs && !expected.hindsight.empty()) {
     text += ". In hindsight: " + markdown_text(expected.hindsight);
   }

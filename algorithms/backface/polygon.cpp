@@ -24,7 +24,8 @@
 // Cost: O(candidate triangles); one 3 x 3 inverse an object. Memory: hesse 16 bytes a triangle of a
 //   mesh, computed none, stored_normal 12 bytes a triangle, vertex_normals 12 bytes a vertex;
 //   instances share it.
-// Limits: of a solid from far away half of the faces, from near by more; nothing for meshes that are
+// Limits: of a solid from far away half of the faces, from near by more; nothing for meshes that
+// are
 //   open or cross or touch themselves anywhere; does not see that objects hide each other. Short
 //   runs of kept triangles make long lists of ranges.
 // Sources: textbook chapter 17, Culling (in German), 17.1 (Hesse form; e = 0 is front; normals of
@@ -65,7 +66,8 @@ CullerInfo describe() {
       open_parameter()};
   info.cost = "O(candidate triangles): one plane test each, and a 3 x 3 inverse an object";
   info.limits =
-      "Of a solid from far away half of the faces at best, from near by more; keeps meshes that are open or cross themselves, and "
+      "Of a solid from far away half of the faces at best, from near by more; keeps meshes that "
+      "are open or cross themselves, and "
       "objects around the eye, whole. With open=cull the backs that such meshes show disappear; "
       "with form=vertex_normals front faces in hollows do.";
   info.sources = {

@@ -94,8 +94,7 @@ SweepVerdict verdict_on(const Sweep& sweep, const SweepMethod& method, const Cel
     return sweep.limit.at_least ? figure < than : figure > than;
   };
   // What others are held against has nothing to hold to itself.
-  const bool is_yardstick =
-      sweep.limit.against && &sweep.methods[*sweep.limit.against] == &method;
+  const bool is_yardstick = sweep.limit.against && &sweep.methods[*sweep.limit.against] == &method;
   verdict.limit = worst_allowed(sweep.limit, verdict.guarantee, points.front().figure, pixels);
   verdict.is_complete = true;
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -154,13 +154,13 @@ SweepLimit read_limit(const toml::table& table, const std::string& file) {
 
 SweepExpectation read_expectation(const toml::table& table, const SweepDial& dial,
                                   const std::string& file) {
-  refuse_unknown_keys(table, {"culler", "breaks", "source", "because", "hindsight"}, "[[expect]]", file);
+  refuse_unknown_keys(table, {"culler", "breaks", "source", "because", "hindsight"}, "[[expect]]",
+                      file);
   SweepExpectation expectation;
   expectation.culler = required_text(table, "culler", "[[expect]]", file);
   expectation.source = required_text(table, "source", "[[expect]]", file);
   expectation.because = required_text(table, "because", "[[expect]]", file);
-  expectation.hindsight = 
-      value_of<std::string>(table, "hindsight", "a text", file).value_or("");
+  expectation.hindsight = value_of<std::string>(table, "hindsight", "a text", file).value_or("");
   const toml::node* const breaks = table.get("breaks");
   if (breaks != nullptr && breaks->value_exact<std::string>() == "never") return expectation;
   const toml::array* const range = breaks == nullptr ? nullptr : breaks->as_array();

@@ -283,8 +283,9 @@ TEST_F(SweepFileTest, EveryCullerOfTheRegistryStandsInASweepOrHasAReason) {
 }
 
 TEST_F(SweepFileTest, FiguresAreMeasuredAndNotWrittenIntoTheRepositorysFiles) {
-  const std::vector<Sweep> sweeps = load_sweeps(
-      std::filesystem::path(VISLAB_SOURCE_DIR) / "experiments" / "stress", folder_.path(), registry_);
+  const std::vector<Sweep> sweeps =
+      load_sweeps(std::filesystem::path(VISLAB_SOURCE_DIR) / "experiments" / "stress",
+                  folder_.path(), registry_);
   for (const Sweep& sweep : sweeps) {
     for (const SweepMethod& method : sweep.methods) {
       if (!method.expectation) continue;
