@@ -30,7 +30,9 @@ bool was_in_a_cell(const CellSummary& cell) {
 
 Fields row_of(const BlockSummary& block, const CellSummary& cell) {
   Fields row;
-  row.values["place"] = markdown_text(block.scene + ", " + block.path);
+  row.values["place"] = markdown_text(
+      block.scene + ", " + block.path + ", " + std::to_string(block.viewport.width) + " × " +
+      std::to_string(block.viewport.height) + ", " + std::to_string(block.frames) + " frames");
   row.values["method"] = markdown_code(cell.culler);
   row.values["promises"] = markdown_text(to_string(cell.guarantee));
   row.values["outside"] = format_percent(counter_of(cell, outside));

@@ -195,6 +195,7 @@ void add_chain_fields(const ReportInput& input, Fields& fields) {
   fields.values["one_family"] = std::to_string(all.size() - choices.size());
   fields.flag("has_one_family", choices.size() < all.size());
   fields.flag("has_choices", !choices.empty());
+  fields.values["choice_count"] = std::to_string(choices.size());
   fields.flag("has_families", !families.empty());
   fields.lists["guides"] = guide_fields(input.blocks);
   fields.flag("has_guides", !fields.lists["guides"].empty());

@@ -11,6 +11,7 @@
 #include "report/chart_legend.h"
 #include "report/chart_parts.h"
 #include "report/dial_curves.h"
+#include "report/finding.h"
 #include "report/format.h"
 
 namespace vislab {
@@ -110,7 +111,10 @@ std::string cut(std::string text) {
 class ChartWriter {
  public:
   ChartWriter(const BlockSummary& block, const ChartChoice& takes, std::ostream& out)
-      : out_(out), marks_(marks_of(block, takes)), timed_(has_time_axis(block)) {
+      : out_(out),
+        marks_(marks_of(block, takes)),
+        best_(find(block).best),
+        timed_(has_time_axis(block)) {
     std::vector<double> ends;
     for (const Mark& mark : marks_) {
       const Estimate x = x_of(*mark.cell);
@@ -182,6 +186,7 @@ class ChartWriter {
       for (std::size_t panel = 0; panel < panels_.size(); ++panel) {
         for (const std::size_t i : hull_marks(panel)) marks_[i].named = true;
       }
+      for (Mark& mark : marks_) mark.named = mark.named || mark.cell == best_;
     }
     std::size_t looks = 0;
     for (const Curve& curve : curves_) {
@@ -428,6 +433,7 @@ class ChartWriter {
 
   std::ostream& out_;
   std::vector<Mark> marks_;
+  const CellSummary* best_ = nullptr;  // of which the text beside the chart speaks
   bool timed_ = false;
   std::vector<Estimate> x_;
   double none_x_ = 0.0;

@@ -71,6 +71,14 @@ double ChartAxis::share(double value) const {
   return (at - low) / (high - low);
 }
 
+ChartAxis zero_axis() {
+  ChartAxis axis;
+  axis.low = -0.08;
+  axis.high = 1.0;
+  axis.ticks = {{0.0, "0"}, {1.0, "1"}};
+  return axis;
+}
+
 ChartAxis positive_axis(const std::vector<double>& values) {
   ChartAxis axis;
   double least = 0.0;

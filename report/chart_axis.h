@@ -21,6 +21,9 @@ struct ChartAxis {
   double share(double value) const;
 };
 
+/// An axis from 0 to 1 for figures that are all 0.
+ChartAxis zero_axis();
+
 /// An axis for positive values such as times: from zero, or logarithmic if they differ by more than
 /// a factor of six. `values` may be empty.
 ChartAxis positive_axis(const std::vector<double>& values);

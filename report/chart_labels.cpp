@@ -15,7 +15,7 @@ constexpr double ring_step_px = 6.0;  // between the circles of places that are 
 constexpr int rings = 9;
 constexpr int directions = 16;
 constexpr double leader_from_px = 15.0;
-constexpr double most_covered = 0.1;                             // of a legible label
+constexpr double most_covered_px2 = 8.0;  // of a legible label: less than a line through a letter
 constexpr double weight_outside = 10.0, weight_of_label = 10.0;  // beside other things covered
 constexpr double crossing_px2 = 400.0;  // of a leader with a label or a leader; as if so much of a
                                         // label were covered
@@ -52,6 +52,20 @@ bool crosses(const Leader& a, const Leader& b) {
     return way.x * there.y - way.y * there.x;
   };
   return side(a, b.from) * side(a, b.to) < 0.0 && side(b, a.from) * side(b, a.to) < 0.0;
+}
+
+double distance(const ChartBox& box, const LabelRequest& point) {
+  const double x = std::max({box.left - point.x, 0.0, point.x - box.right});
+  const double y = std::max({box.bottom - point.y, 0.0, point.y - box.top});
+  return std::hypot(x, y);
+}
+
+/// Would a reader take the label to be another point's?
+bool is_nearer_to_another(const ChartBox& box, const LabelRequest& own,
+                          const std::vector<LabelRequest>& requests) {
+  return std::ranges::any_of(requests, [&](const LabelRequest& other) {
+    return distance(box, other) < distance(box, own);
+  });
 }
 
 /// How often a label and its leader, if it has one, cross the leaders and labels that are there.
@@ -101,7 +115,8 @@ std::vector<PlacedLabel> place_labels(const std::vector<LabelRequest>& requests,
         for (const ChartBox& other : taken) on_labels += box.overlap(other);
         double covered = 0.0;
         for (const ChartBox& other : obstacles) covered += box.overlap(other);
-        const bool has_leader = radius > leader_from_px;
+        const bool has_leader =
+            radius > leader_from_px || is_nearer_to_another(box, request, requests);
         std::optional<Leader> leader;
         if (has_leader) leader = Leader{{request.x, request.y}, {x, y}};
         const auto crossed = crossings(box, leader, taken, leaders);
@@ -111,7 +126,7 @@ std::vector<PlacedLabel> place_labels(const std::vector<LabelRequest>& requests,
           least = cost;
           best = {
               x, y, has_leader,
-              outside == 0.0 && on_labels == 0.0 && crossed == 0 && covered <= most_covered * area};
+              outside == 0.0 && on_labels == 0.0 && crossed == 0 && covered <= most_covered_px2};
         }
       }
     }

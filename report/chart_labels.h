@@ -15,7 +15,7 @@ struct ChartBox {
 
 struct PlacedLabel {
   double x = 0.0, y = 0.0;  // centre of the label
-  bool leader = false;      // so far from its point that a line should join them
+  bool leader = false;  // a line should join it and its point: they are far, or another is nearer
   /// False: there was no place where it hides next to nothing, and should be left out.
   bool is_legible = true;
 };

@@ -55,6 +55,10 @@ double worth(const BlockSummary& block, const FamilyMethod& method) {
   return block.drawn ? method.ratio.value : method.kept;
 }
 
+bool is_better(const BlockSummary& block, const FamilyMethod& a, const FamilyMethod& b) {
+  return block.drawn ? is_sooner(block, a.ratio, b.ratio) : worth(block, a) < worth(block, b);
+}
+
 }  // namespace
 
 std::string family_of_stage(const std::string& name, const Registry* cullers) {
@@ -103,7 +107,7 @@ FamilyOn family_on(const BlockSummary& block, const std::string& family, const R
       continue;
     }
     if (cell.guarantee == Guarantee::erroneous || !(worth(block, method) >= 0.0)) continue;
-    if (found.best == nullptr || worth(block, method) < worth(block, *found.best)) {
+    if (found.best == nullptr || is_better(block, method, *found.best)) {
       found.best = &method;
     }
   }
@@ -111,8 +115,7 @@ FamilyOn family_on(const BlockSummary& block, const std::string& family, const R
 }
 
 bool saves_time(const BlockSummary& block, const FamilyMethod& method) {
-  const double bar = noise_band(block.noise).low;
-  return block.drawn && method.ratio.high < bar;
+  return block.drawn && told_against_none(block, method.ratio) == AgainstNone::faster;
 }
 
 }  // namespace vislab

@@ -39,8 +39,9 @@ struct FamilyOn {
   /// Finished and judged, no anchors; nor methods that go from cell to cell whose viewer never was
   /// in any, for they had nothing to work on.
   std::vector<FamilyMethod> methods;
-  /// Without errors and not wrong on purpose: its last stage takes the least share of the time, or
-  /// where nothing is drawn, leaves the least share of the triangles. Null: there is none.
+  /// Without errors and not wrong on purpose: its last stage takes the least share of the time, of
+  /// those told to save any if there are such, or where nothing is drawn, leaves the least share of
+  /// the triangles. Null: there is none.
   const FamilyMethod* best = nullptr;
   const CellSummary* worst = nullptr;       // with the most false pixels; null: all have none
   const CellSummary* most_wrong = nullptr;  // as `worst`, by wrong_pixels()

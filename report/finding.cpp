@@ -23,10 +23,15 @@ bool is_oracle(const CellSummary& cell) {
   return cell.anchor && cell.canonical != "none" && cell.guarantee != Guarantee::approximate;
 }
 
-FindingKind kind_of(const Estimate& ratio, const Estimate& noise) {
-  const Estimate band = noise_band(noise);
-  if (ratio.high < band.low) return FindingKind::saves;
-  if (ratio.low > band.high) return FindingKind::loses;
+FindingKind kind_of(const BlockSummary& block, const Estimate& ratio) {
+  switch (told_against_none(block, ratio)) {
+    case AgainstNone::faster:
+      return FindingKind::saves;
+    case AgainstNone::slower:
+      return FindingKind::loses;
+    case AgainstNone::alike:
+      break;
+  }
   return FindingKind::within_noise;
 }
 
@@ -79,11 +84,15 @@ Finding find(const BlockSummary& block) {
     if (cell.anchor) continue;
     const bool is_clean = is_free_of_errors(cell);
     if (is_clean && cell.guarantee == Guarantee::erroneous) continue;
-    const CellSummary*& place = is_clean ? finding.best : finding.erring;
-    place = lesser(place, &cell, time_ratio);
+    if (!is_clean) {
+      finding.erring = lesser(finding.erring, &cell, time_ratio);
+    } else if (finding.best == nullptr ||
+               is_sooner(block, cell.against_none, finding.best->against_none)) {
+      finding.best = &cell;
+    }
   }
   if (finding.best != nullptr) {
-    finding.kind = kind_of(finding.best->against_none, block.noise);
+    finding.kind = kind_of(block, finding.best->against_none);
   } else if (finding.erring != nullptr) {
     finding.kind = FindingKind::none_clean;
   }

@@ -18,8 +18,8 @@ enum class FindingKind {
 
 struct Finding {
   FindingKind kind = FindingKind::no_method;
-  /// Without errors: the fastest, or where nothing is drawn, the one with the least over. Null if
-  /// there is none.
+  /// Without errors: the fastest, of those that are told to be faster than none if there are any;
+  /// or where nothing is drawn, the one with the least over. Null if there is none.
   const CellSummary* best = nullptr;
   /// The fastest without false pixels that was timed against none, or null.
   const CellSummary* oracle = nullptr;

@@ -44,7 +44,7 @@ std::string format_count(std::uint64_t count) { return separate_thousands(std::t
 
 std::string format_number(double value) {
   if (!std::isfinite(value)) return no_value;
-  if (value > 0.0 && value < 0.00005) return "< 0.0001";
+  if (value > 0.0 && value < 0.00005) return std::string("<") + narrow_gap + "0.0001";
   return with_decimals(value, decimals_for(value));
 }
 

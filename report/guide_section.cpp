@@ -111,6 +111,7 @@ std::vector<Fields> guide_fields(const std::vector<BlockSummary>& blocks) {
       advice.emplace_back();
       advice.back().values["sentence"] = advice_text(one);
     }
+    entry.flag("has_advice", !advice.empty());
     entries.push_back(std::move(entry));
   }
   return entries;

@@ -45,14 +45,17 @@ std::string share(double relative) { return std::isnan(relative) ? "–" : forma
 
 /// What the measured knee says of the default.
 std::string verdict_text(const SizeSweep& sweep, const SizeVerdict& verdict) {
-  if (!verdict.was_measured()) return "not measured";
+  if (!verdict.was_measured()) return "was not measured";
   if (verdict.default_is_knee()) {
     return verdict.common.may_be_knee.size() == 1 ? "is the knee" : "may be the knee";
   }
   const SizePoint& by_default = verdict.common.points[verdict.method.default_value];
-  return "**knee at " + common_knee(sweep, verdict.common) + "**; the default has " +
-         share(by_default.relative) + " of the best" +
-         (verdict.method.off_knee.empty() ? "" : ": " + markdown_text(verdict.method.off_knee));
+  std::string text = "has " + share(by_default.relative) + " of the best, with the **knee at " +
+                     common_knee(sweep, verdict.common) + "**";
+  if (verdict.method.off_knee.empty()) return text;
+  std::string_view reason = verdict.method.off_knee;
+  if (reason.ends_with('.')) reason.remove_suffix(1);
+  return text + " (" + markdown_text(reason) + ")";
 }
 
 Fields value_row(const SizeSweep& sweep, const SizeVerdict& verdict, std::size_t value) {

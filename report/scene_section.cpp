@@ -201,6 +201,7 @@ Fields block_fields(const ReportInput& input, std::size_t index, const DeviceFit
   const std::string title = markdown_text(title_of(input.blocks, block));
   Fields fields;
   fields.values["title"] = title;
+  fields.values["scene_name"] = markdown_text(block.scene);
   fields.values["description"] = markdown_text(block.scene_description);
   fields.values["object_count"] = format_count(block.objects);
   fields.values["triangle_count"] = format_count(block.triangles);

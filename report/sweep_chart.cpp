@@ -21,6 +21,7 @@ constexpr double y_title_left = 10.0;
 constexpr double axis_height = 50.0;  // tick labels and title below the panel
 constexpr double top_margin = 10.0;
 constexpr double digit_width = 6.5, tick_gap = 8.0;  // of tick labels
+constexpr double rounding = 1e-9;                    // of the largest figure
 /// Lines that lie on each other are told apart by moving each a little along the dial.
 constexpr double sidestep = 0.024;  // of the distance between two values
 constexpr const char* limit_style = "dt (2,4) lw 1.2 lc rgb '#777777'";
@@ -44,23 +45,35 @@ class SweepChart {
  public:
   SweepChart(const SweepResult& result, std::ostream& out) : result_(result), out_(out) {
     std::vector<double> figures;
+    double most = 0.0;
     std::vector<LegendEntry> entries;
     for (const SweepVerdict& verdict : result.verdicts) {
       entries.push_back(symbol_entry(verdict.culler, method_look(entries.size()), 0.8));
       for (const SweepPoint& point : verdict.points) {
-        if (!std::isnan(point.figure)) figures.push_back(point.figure);
+        if (!std::isnan(point.figure)) most = std::max(most, point.figure);
       }
     }
-    entries.push_back(symbol_entry("ring: break point", Look{"#000000", ring}, 1.5));
+    if (std::ranges::any_of(result.verdicts, has_ring)) {
+      entries.push_back(symbol_entry("ring: break point", Look{"#000000", ring}, 1.5));
+    }
     common_limit_ = common_limit();
     if (common_limit_ > 0.0) {
       figures.push_back(common_limit_);
       entries.push_back(line_entry("limit", limit_style));
+      most = std::max(most, common_limit_);
     }
-    const double most = figures.empty() ? 0.0 : std::ranges::max(figures);
+    least_shown_ = rounding * most;
+    for (const SweepVerdict& verdict : result.verdicts) {
+      for (const SweepPoint& point : verdict.points) {
+        if (!std::isnan(point.figure)) figures.push_back(shown(point.figure));
+      }
+    }
     const bool has_zero = std::ranges::count(figures, 0.0) > 0;
-    axis_ = has_zero && most > 0.0 ? logarithmic_axis(figures, most, "0")
-                                   : positive_axis(most > 0.0 ? figures : std::vector{1.0});
+    if (!(most > 0.0)) {
+      axis_ = zero_axis();
+    } else {
+      axis_ = has_zero ? logarithmic_axis(figures, most, "0") : positive_axis(figures);
+    }
     legend_ = Legend(std::move(entries));
   }
 
@@ -150,7 +163,7 @@ class SweepChart {
         if (std::isnan(figure)) {
           out_ << "NaN\n";
         } else {
-          out_ << axis_.position(figure) << '\n';
+          out_ << axis_.position(shown(figure)) << '\n';
         }
       };
       out_ << "$method" << m << " << END\n";
@@ -162,6 +175,9 @@ class SweepChart {
       out_ << "END\n";
     }
   }
+
+  /// What is left of a difference of equal numbers is zero.
+  double shown(double figure) const { return figure < least_shown_ ? 0.0 : figure; }
 
   static bool has_ring(const SweepVerdict& verdict) {
     return verdict.break_point && !std::isnan(verdict.points[*verdict.break_point].figure);
@@ -182,7 +198,7 @@ class SweepChart {
 
   const SweepResult& result_;
   std::ostream& out_;
-  double common_limit_ = 0.0;
+  double common_limit_ = 0.0, least_shown_ = 0.0;
   ChartAxis axis_;
   Legend legend_;
   double height_ = 0.0, panel_height_ = 0.0;

@@ -12,22 +12,27 @@ bool can_be_chosen(const CellSummary& cell) {
          cell.guarantee != Guarantee::erroneous && cell.status == ResultCell::Status::done;
 }
 
-double ratio_of(const CellSummary* cell) { return cell->against_none.value; }
-
 bool is_nearly_right(const CellSummary& cell) {
   return static_cast<double>(cell.false_px) <=
          nearly_right_share * static_cast<double>(cell.pixels);
 }
 
 ChainChoice::Worth worth_of(const BlockSummary& block, const CellSummary& best) {
-  const Estimate noise = noise_band(block.noise);
-  if (best.against_none.high < noise.low) return ChainChoice::Worth::saves;
-  if (best.against_none.low > noise.high) return ChainChoice::Worth::loses;
+  switch (told_against_none(block, best.against_none)) {
+    case AgainstNone::faster:
+      return ChainChoice::Worth::saves;
+    case AgainstNone::slower:
+      return ChainChoice::Worth::loses;
+    case AgainstNone::alike:
+      break;
+  }
   return ChainChoice::Worth::within_noise;
 }
 
 ChainChoice choice_of(const BlockSummary& block, std::vector<const CellSummary*> cells) {
-  std::ranges::stable_sort(cells, {}, ratio_of);
+  std::ranges::stable_sort(cells, [&](const CellSummary* a, const CellSummary* b) {
+    return is_sooner(block, a->against_none, b->against_none);
+  });
   ChainChoice choice;
   choice.block = &block;
   for (const CellSummary* cell : cells) {

@@ -24,7 +24,8 @@ struct ChainChoice {
 
   const BlockSummary* block = nullptr;
   Worth worth = Worth::nothing;
-  const CellSummary* best = nullptr;  // the fastest without an error
+  /// The fastest without an error, of those that are told to be faster than none if there are any.
+  const CellSummary* best = nullptr;
   /// The others without an error that cannot be told from it, the fastest first.
   std::vector<const CellSummary*> undecided;
   /// The fastest that is nearly right, if it is faster than `best`, told apart; else null.

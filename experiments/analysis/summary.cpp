@@ -393,6 +393,20 @@ Estimate noise_band(const Estimate& noise) {
   return {noise.value, std::min(1.0, noise.low), std::max(1.0, noise.high)};
 }
 
+AgainstNone told_against_none(const BlockSummary& block, const Estimate& ratio) {
+  const Estimate band = noise_band(block.noise);
+  if (ratio.high < band.low) return AgainstNone::faster;
+  if (ratio.low > band.high) return AgainstNone::slower;
+  return AgainstNone::alike;
+}
+
+bool is_sooner(const BlockSummary& block, const Estimate& a, const Estimate& b) {
+  const auto rank = [&](const Estimate& ratio) {
+    return std::pair(told_against_none(block, ratio) != AgainstNone::faster, ratio.value);
+  };
+  return rank(a) < rank(b);
+}
+
 std::vector<BlockSummary> summarise(const std::vector<JudgedCell>& cells) {
   std::map<decltype(block_key(cells.front().cell)), std::vector<const JudgedCell*>> blocks;
   for (const JudgedCell& cell : cells) blocks[block_key(cell.cell)].push_back(&cell);

@@ -133,6 +133,14 @@ bool is_of_one_machine(const BlockSummary& block);
 /// a control (`noise` was not measured) any ratio may be noise: from 0 to infinity.
 Estimate noise_band(const Estimate& noise);
 
+/// What a share of the time of drawing everything says beyond the block's noise.
+enum class AgainstNone { faster, alike, slower };
+AgainstNone told_against_none(const BlockSummary& block, const Estimate& ratio);
+
+/// Is `a` to be preferred for its share of the time of drawing everything? What is told to be
+/// faster than that goes before what may be, and of two alike the one with the lesser share.
+bool is_sooner(const BlockSummary& block, const Estimate& a, const Estimate& b);
+
 /// A cell and what the present judge makes of it (empty: nothing yet).
 struct JudgedCell {
   ResultCell cell;

@@ -36,6 +36,18 @@ TEST(Finding, ASavingWithinTheNoiseIsNone) {
   EXPECT_EQ(find(block).kind, FindingKind::within_noise);
 }
 
+TEST(Finding, AMethodThatIsToldToSaveGoesBeforeOneThatMaySaveMore) {
+  BlockSummary block = fabricated_block("made_up");
+  block.noise = {1.0, 0.88, 1.12};
+  CellSummary unsure = fabricated_cell("unsure", 0.52, 0, 3.0);
+  unsure.against_none = {0.52, 0.31, 0.99};
+  block.cells.push_back(unsure);
+  EXPECT_EQ(find(block).kind, FindingKind::within_noise);
+  block.cells.push_back(fabricated_cell("sure", 0.55, 0, 3.0));
+  EXPECT_EQ(find(block).kind, FindingKind::saves);
+  EXPECT_EQ(find(block).best->culler, "sure");
+}
+
 TEST(Finding, WithoutAControlNoSavingIsSaidToBeOne) {
   BlockSummary block = fabricated_block("plain");
   block.cells.push_back(fabricated_cell("frustum.flat", 0.5, 0, 1.0));

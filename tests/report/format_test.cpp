@@ -22,7 +22,7 @@ TEST(Format, NumbersHaveThreeSignificantDigits) {
   EXPECT_EQ(format_rounded(4.2), "4.20");
   EXPECT_EQ(format_number(0.0), "0");
   EXPECT_EQ(format_number(0.000417), "0.0004");
-  EXPECT_EQ(format_number(0.00001), "< 0.0001");
+  EXPECT_EQ(format_number(0.00001), "<\u202F0.0001");
   EXPECT_EQ(format_number(-12.34), "-12.3");
   EXPECT_EQ(format_number(std::nan("")), "–");
 }
