@@ -90,6 +90,7 @@ Fields method_fields(const SizeSweep& sweep, const SizeVerdict& verdict, const s
   entry.values["verdict"] = verdict_text(sweep, verdict);
   entry.flag("chart", has_size_chart(verdict));
   entry.flag("has_note", !verdict.method.note.empty());
+  entry.flag("mixed_rounds", !verdict.common.same_rounds);
   for (std::size_t value = 0; value < sweep.values.size(); ++value) {
     entry.lists["values"].push_back(value_row(sweep, verdict, value));
   }

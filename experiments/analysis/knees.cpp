@@ -163,8 +163,13 @@ SizeCurve curve_of(const SizeSweep& sweep, const SizeMethod& method, std::size_t
   SizeCurve curve;
   curve.scene = sweep.blocks[block].scene;
   curve.path = sweep.blocks[block].path;
+  const std::set<std::string>* sessions = nullptr;
   for (const std::string& chain : method.chains) {
-    curve.points.push_back(point_of(cell_of(block, chain), sweep.cost));
+    const SizeCell found = cell_of(block, chain);
+    curve.points.push_back(point_of(found, sweep.cost));
+    if (!curve.points.back().was_measured() || sweep.cost == SizeCost::frame_ms) continue;
+    if (sessions == nullptr) sessions = &found.cell->sessions;
+    curve.same_rounds = curve.same_rounds && *sessions == found.cell->sessions;
   }
   find_knee(curve);
   if (sweep.cost == SizeCost::decision_us && curve.best) {
@@ -275,6 +280,7 @@ SizeResult find_knees(const SizeSweep& sweep, const SizeCellOf& cell_of) {
     for (std::size_t value = 0; value < sweep.values.size(); ++value) {
       verdict.common.points.push_back(common_point(verdict.scenes, value));
     }
+    verdict.common.same_rounds = std::ranges::all_of(verdict.scenes, &SizeCurve::same_rounds);
     find_knee(verdict.common);
     result.verdicts.push_back(std::move(verdict));
   }

@@ -48,6 +48,9 @@ struct SizeCurve {
   std::vector<SizePoint> points;  // one for each value of the dial
   std::optional<std::size_t> best, knee;
   std::vector<std::size_t> may_be_knee;  // ascending; knee is one of them
+  /// Were all values measured in the same rounds? Else times that are paired with nothing (all but
+  /// SizeCost::frame_ms) may differ by what else the machine did.
+  bool same_rounds = true;
 
   std::size_t measured() const;
 };

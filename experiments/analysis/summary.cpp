@@ -200,6 +200,7 @@ CellSummary summarise_cell(const JudgedCell& judged) {
   summary.granularity = cell.granularity;
   summary.culls = cell.culls;
   summary.rounds = static_cast<int>(cell.rounds.size());
+  for (const Round& round : cell.rounds) summary.sessions.insert(round.session);
   summary.machine = machine_of(cell);
   summary.calibrated = cell.costs.has_value();
   summary.build_ms = cell.build_ms;

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -36,8 +37,9 @@ struct CellSummary {
   Granularity granularity = Granularity::object;
   Culls culls = Culls::hidden;
   int rounds = 0;
-  std::string machine;           // id of the one that measured it
-  std::size_t device_model = 0;  // place in BlockSummary::device_models, if that has any
+  std::set<std::string> sessions;  // the runs of the block that measured it: rounds pair within one
+  std::string machine;             // id of the one that measured it
+  std::size_t device_model = 0;    // place in BlockSummary::device_models, if that has any
 
   // Accuracy, sums over all frames unless it says otherwise.
   bool judged = false;       // false: the values below mean nothing

@@ -28,14 +28,15 @@ std::string may_be(const SizeSweep& sweep, const SizeCurve& curve) {
   return all;
 }
 
-/// Why figures are missing.
+/// Why figures are missing, or hard to compare.
 std::string note_of(const SizeSweep& sweep, const SizeCurve& curve) {
+  const std::string apart = curve.same_rounds ? "" : "values of different runs";
   const std::size_t missing = sweep.values.size() - curve.measured();
-  if (missing == 0) return "";
+  if (missing == 0) return apart;
   const auto gap = std::ranges::find_if(
       curve.points, [](const SizePoint& point) { return !point.was_measured(); });
-  return std::to_string(missing) + " of " + std::to_string(sweep.values.size()) +
-         " values are missing: " + gap->gap;
+  return (apart.empty() ? "" : apart + "; ") + std::to_string(missing) + " of " +
+         std::to_string(sweep.values.size()) + " values are missing: " + gap->gap;
 }
 
 void add_curve(const SizeSweep& sweep, const SizeVerdict& verdict, const SizeCurve& curve,

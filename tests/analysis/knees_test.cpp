@@ -90,6 +90,18 @@ TEST(Knees, TheKneeIsTheSmallestModelWithinFivePercentOfTheBest) {
   EXPECT_NEAR(curve.points[0].relative, 0.75, 1e-12);
 }
 
+TEST(Knees, ValuesOfDifferentRunsAreToldWhereTheirTimesArePairedWithNothing) {
+  for (const auto& [cost, told] :
+       {std::pair{SizeCost::decision_us, true}, {SizeCost::frame_ms, false}}) {
+    const SizeSweep sweep = sweep_on({"one"}, cost);
+    BlockSummary block = block_of(sweep, {{0.6, 10, 0}, {0.7, 20, 0}, {0.8, 40, 0}, {0.8, 80, 0}});
+    for (CellSummary& cell : block.cells) cell.sessions = {"a run"};
+    EXPECT_TRUE(knees_of(sweep, {block}).verdicts.front().common.same_rounds);
+    block.cells[2].sessions = {"another run"};
+    EXPECT_EQ(knees_of(sweep, {block}).verdicts.front().common.same_rounds, !told);
+  }
+}
+
 TEST(Knees, OneModelAloneIsNoKnee) {
   SizeCurve curve = curve_of({{0.60, 10, 0}, {0.77, 20, 0}});
   EXPECT_TRUE(curve.knee);

@@ -88,6 +88,13 @@ TEST(ModelSizeSection, AMissingCellIsAGapWithItsReason) {
   EXPECT_FALSE(size_charts_script({result}).empty());
 }
 
+TEST(ModelSizeSection, SaysIfValuesWereMeasuredInDifferentRuns) {
+  SizeResult result = fabricated_sizes();
+  EXPECT_EQ(section_of({result}).find("in the same rounds"), std::string::npos);
+  result.verdicts[0].common.same_rounds = false;
+  EXPECT_NE(section_of({result}).find("in the same rounds"), std::string::npos);
+}
+
 TEST(ModelSizeSection, OfAMethodThatWasNotMeasuredThereIsNoCurve) {
   SizeResult result = fabricated_sizes();
   result.verdicts.push_back(result.verdicts[0]);
