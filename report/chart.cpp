@@ -95,12 +95,6 @@ std::vector<Mark> marks_of(const BlockSummary& block, const ChartChoice& takes) 
   return marks;
 }
 
-/// Of UTF-8.
-double letters_of(const std::string& text) {
-  return static_cast<double>(std::ranges::count_if(
-      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
-
 std::string cut(std::string text) {
   if (text.size() <= longest_legend_text) return text;
   std::size_t end = longest_legend_text;
@@ -368,7 +362,7 @@ class ChartWriter {
                              const std::string& colour) {
       texts.push_back(text);
       colours.push_back(colour);
-      requests.push_back({x, y, letter * letters_of(text), label_height});
+      requests.push_back({x, y, letter * static_cast<double>(letters_of(text)), label_height});
     };
     for (const PointGroup& group : group_points(numbered_points(index), shared_label_reach)) {
       request(group.x, group.y, number_list(group.numbers), digit_width, label_colour);

@@ -21,8 +21,10 @@ std::string tick_label(double value) {
   }
   if (value > 0.0 && value < 0.001) {
     std::array<char, 32> shortest{};
-    std::snprintf(shortest.data(), shortest.size(), "%.0e", value);
-    return format_written(shortest.data());
+    std::snprintf(shortest.data(), shortest.size(), "%.1e", value);
+    std::string label = shortest.data();
+    if (label[2] == '0') label.erase(1, 2);  // "5.0e-05"
+    return format_written(label);
   }
   std::string label = format_number(value);
   if (label.find('.') != std::string::npos) {

@@ -42,13 +42,17 @@ std::string place_of(const PublishedRow& row, const OwnFigure& own) {
   return place;
 }
 
+bool has_interval(const PublishedRow& row, const OwnFigure& own) {
+  return row.compares && own.ratio.low < own.ratio.high;
+}
+
 std::string own_text(const PublishedRow& row, const OwnFigure& own) {
   if (own.cell == nullptr) return "–";
   if (row.is_share()) return format_percent(own.ratio.value);
-  if (row.compares && own.ratio.low < own.ratio.high) return format_estimate(own.ratio);
-  const double low = row.accept.low;
-  const bool is_below = own.ratio.value < low;
-  return format_apart(own.ratio.value, is_below ? low : row.accept.high);
+  if (has_interval(row, own)) return format_estimate(own.ratio);
+  const double value = own.ratio.value;
+  const bool is_low_nearer = std::abs(value - row.accept.low) < std::abs(value - row.accept.high);
+  return format_apart(value, is_low_nearer ? row.accept.low : row.accept.high);
 }
 
 /// "0.2 to 0.5", "at least 1", "at most 1": what of ours confirms the claim.
@@ -56,7 +60,9 @@ std::string accept_text(const PublishedRow& row, const OwnFigure& own) {
   if (!row.cannot_be_told.empty()) return "–";
   const auto text = [&](double bound) {
     if (row.is_share()) return format_percent(bound);
-    return own.cell == nullptr ? format_number(bound) : format_apart(bound, own.ratio.value);
+    const bool is_near = own.cell != nullptr && !has_interval(row, own) &&
+                         format_number(bound) == format_number(own.ratio.value);
+    return is_near ? format_apart(bound, own.ratio.value) : format_number(bound);
   };
   const double low = row.accept.low;
   const double high = row.accept.high;

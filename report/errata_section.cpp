@@ -5,6 +5,7 @@
 
 #include "common/scene/error.h"
 #include "report/format.h"
+#include "report/sweep_section.h"
 
 namespace vislab {
 namespace {
@@ -106,10 +107,8 @@ std::string sweep_text(const ReportInput& input, const Erratum& erratum) {
     if (!verdict.culler.starts_with(begin)) continue;
     const SweepDial& dial = sweep->sweep.dial;
     if (verdict.break_point) {
-      return text + "breaks at " +
-             markdown_text(dial.texts[*verdict.break_point] +
-                           (dial.unit.empty() ? "" : " " + dial.unit)) +
-             " (" + markdown_text(dial.name) + ")";
+      return text + "breaks at " + dial_text(dial, *verdict.break_point) + " (" +
+             markdown_text(dial.name) + ")";
     }
     return text + (verdict.is_complete ? "does not break" : "not all values were measured");
   }
@@ -197,6 +196,7 @@ Fields reprint_entry(const ReportInput& input, const Erratum& erratum,
   entry.values["wrong_method"] = markdown_code(erratum.wrong.front());
   entry.values["right_method"] = markdown_code(erratum.against);
   entry.values["sweep"] = sweep_text(input, erratum);
+  entry.flag("has_break", entry.values["sweep"].find("breaks at") != std::string::npos);
   for (const Reprint& reprint : reprints) entry.lists["rows"].push_back(reprint_fields(reprint));
   return entry;
 }

@@ -13,6 +13,7 @@
 #include "report/family_stability.h"
 #include "report/finding.h"
 #include "report/format.h"
+#include "report/sweep_section.h"
 
 namespace vislab {
 namespace {
@@ -101,9 +102,8 @@ Fields best_row(const std::vector<BlockSummary>& blocks, const BlockSummary& blo
 
 /// "`m` at 4 m".
 std::string break_of(const Sweep& sweep, const SweepVerdict& verdict) {
-  const std::string unit = sweep.dial.unit.empty() ? "" : " " + sweep.dial.unit;
-  std::string text = markdown_code(verdict.culler) + " at " +
-                     markdown_text(sweep.dial.texts[*verdict.break_point] + unit);
+  std::string text =
+      markdown_code(verdict.culler) + " at " + dial_text(sweep.dial, *verdict.break_point);
   if (verdict.agreement == SweepVerdict::Agreement::differs) text += " (not as expected)";
   return text;
 }

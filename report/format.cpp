@@ -126,6 +126,11 @@ std::string format_written(std::string_view number) {
   return (factor == "1" ? "" : std::string(factor) + times) + "10" + exponent;
 }
 
+std::size_t letters_of(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
 std::string markdown_text(std::string_view text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {

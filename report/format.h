@@ -46,6 +46,9 @@ std::string format_scientific(double value);
 /// as it is.
 std::string format_written(std::string_view number);
 
+/// How many characters a UTF-8 text has.
+std::size_t letters_of(std::string_view text);
+
 /// Text from results, so that no character of it acts as markup, but names in backticks, which
 /// become code.
 std::string markdown_text(std::string_view text);

@@ -9,8 +9,7 @@
 
 namespace vislab {
 
-/// One entry for each registered culler that is a stage of any measured chain, by name; empty
-/// without a registry.
+/// One entry for each registered culler, measured or not, by name; empty without a registry.
 std::vector<Fields> method_fields(const ReportInput& input);
 
 /// Puts citations behind the sources in `markdown` fields named "source": a source that names the

@@ -200,11 +200,6 @@ class SizeChart {
 
 }  // namespace
 
-bool has_size_chart(const SizeVerdict& verdict) {
-  return std::ranges::any_of(verdict.scenes,
-                             [](const SizeCurve& scene) { return scene.measured() > 0; });
-}
-
 std::string size_chart_script(const SizeSweep& sweep, const SizeVerdict& verdict,
                               const std::filesystem::path& file) {
   std::ostringstream script;

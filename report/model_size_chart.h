@@ -8,9 +8,6 @@
 
 namespace vislab {
 
-/// Is there any point to be drawn?
-bool has_size_chart(const SizeVerdict& verdict);
-
 /// gnuplot commands that draw a method's curves, one a scene, into `file` (SVG, 680 units wide):
 /// efficiency as a share of the best, and over-inclusion, against what build() left in memory and
 /// against how long it took. Where that is the same for all values (dials that are turned when

@@ -46,6 +46,7 @@ std::string share(double relative) { return std::isnan(relative) ? "–" : forma
 /// What the measured knee says of the default.
 std::string verdict_text(const SizeSweep& sweep, const SizeVerdict& verdict) {
   if (!verdict.was_measured()) return "was not measured";
+  if (!verdict.common.knee) return "cannot be told, as no two values are there on all scenes";
   if (verdict.default_is_knee()) {
     return verdict.common.may_be_knee.size() == 1 ? "is the knee" : "may be the knee";
   }
@@ -88,7 +89,6 @@ Fields method_fields(const SizeSweep& sweep, const SizeVerdict& verdict, const s
   entry.values["file"] = file;
   entry.values["note"] = markdown_text(verdict.method.note);
   entry.values["verdict"] = verdict_text(sweep, verdict);
-  entry.flag("chart", has_size_chart(verdict));
   entry.flag("has_note", !verdict.method.note.empty());
   entry.flag("mixed_rounds", !verdict.common.same_rounds);
   for (std::size_t value = 0; value < sweep.values.size(); ++value) {
@@ -160,7 +160,7 @@ std::string size_charts_script(const std::vector<SizeResult>& sizes) {
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     for (std::size_t m = 0; m < sizes[i].verdicts.size(); ++m) {
       const SizeVerdict& verdict = sizes[i].verdicts[m];
-      if (!has_size_chart(verdict)) continue;
+      if (!verdict.was_measured()) continue;
       script += size_chart_script(sizes[i].sweep, verdict, chart_file(i, m));
     }
   }

@@ -110,7 +110,9 @@ class SweepChart {
   /// How many values apart the labels stand, so that labels do not run into each other.
   static std::size_t values_per_label(const SweepDial& dial) {
     std::size_t longest = 0;
-    for (const std::string& text : dial.texts) longest = std::max(longest, text.size());
+    for (const std::string& text : dial.texts) {
+      longest = std::max(longest, letters_of(format_written(text)));
+    }
     const double room = panel_width / static_cast<double>(dial.texts.size());
     const double needed = digit_width * static_cast<double>(longest) + tick_gap;
     const auto least = static_cast<std::size_t>(std::ceil(needed / room));

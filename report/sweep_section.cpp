@@ -8,33 +8,26 @@
 namespace vislab {
 namespace {
 
-const std::string no_break = "\u00A0";  // a number's unit stays beside it
-
-std::string in_unit(const SweepDial& dial, std::size_t value) {
-  return markdown_text(format_written(dial.texts[value]) +
-                       (dial.unit.empty() ? "" : no_break + dial.unit));
-}
-
 /// "at 4 m", "none from 0.5 to 64 m", or why it cannot be told.
 std::string break_text(const Sweep& sweep, const SweepVerdict& verdict) {
   const SweepDial& dial = sweep.dial;
   if (verdict.break_point) {
     const SweepPoint& point = verdict.points[*verdict.break_point];
-    const std::string at = "**at " + in_unit(dial, *verdict.break_point) + "**";
+    const std::string at = "**at " + dial_text(dial, *verdict.break_point) + "**";
     if (point.state != SweepPoint::State::failed) return at;
     return at + ", where it failed: " + markdown_text(point.reason);
   }
   if (!verdict.was_measured()) return "not run";
   if (!verdict.missing_counter.empty()) return markdown_text(verdict.missing_counter);
   if (!verdict.is_complete) return "not all values were measured";
-  return "none within " + in_unit(dial, 0) + " to " + in_unit(dial, dial.texts.size() - 1);
+  return "none within " + dial_text(dial, 0) + " to " + dial_text(dial, dial.texts.size() - 1);
 }
 
 /// "12 at 4 m"
 std::string figure_text(const Sweep& sweep, const SweepVerdict& verdict,
                         const std::optional<std::size_t>& value) {
   if (!value) return "–";
-  return format_number(verdict.points[*value].figure) + " at " + in_unit(sweep.dial, *value);
+  return format_number(verdict.points[*value].figure) + " at " + dial_text(sweep.dial, *value);
 }
 
 /// As the dial has it, if it is one of its values: a dial may be turned to 1e-8.
@@ -117,8 +110,8 @@ Fields quiet_row(const SweepResult& result) {
   row.values["sweep"] = markdown_text(result.sweep.name);
   row.values["description"] = markdown_text(result.sweep.description);
   const SweepDial& dial = result.sweep.dial;
-  row.values["dial"] = markdown_text(dial.name) + " from " + in_unit(dial, 0) + " to " +
-                       in_unit(dial, dial.texts.size() - 1);
+  row.values["dial"] = markdown_text(dial.name) + " from " + dial_text(dial, 0) + " to " +
+                       dial_text(dial, dial.texts.size() - 1);
   row.values["limit"] = limit_text(result.sweep);
   std::string methods;
   for (const SweepVerdict& verdict : result.verdicts) {
@@ -129,6 +122,12 @@ Fields quiet_row(const SweepResult& result) {
 }
 
 }  // namespace
+
+std::string dial_text(const SweepDial& dial, std::size_t value) {
+  const std::string no_break = "\u00A0";  // a number's unit stays beside it
+  return markdown_text(format_written(dial.texts[value]) +
+                       (dial.unit.empty() ? "" : no_break + dial.unit));
+}
 
 std::string sweep_chart_file_name(std::size_t sweep) {
   return "sweep-" + std::to_string(sweep + 1) + ".svg";

@@ -17,6 +17,9 @@ void add_sweep_fields(const std::vector<SweepResult>& sweeps, Fields& fields);
 /// Has the sweep an entry, with a chart?
 bool is_shown(const SweepResult& sweep);
 
+/// A value of a dial with its unit, as Markdown: "10⁻⁶ rad".
+std::string dial_text(const SweepDial& dial, std::size_t value);
+
 /// Name of the chart of the sweep with that index: "sweep-1.svg".
 std::string sweep_chart_file_name(std::size_t sweep);
 

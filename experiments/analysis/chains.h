@@ -26,11 +26,11 @@ struct ChainChoice {
   Worth worth = Worth::nothing;
   /// The fastest without an error, of those that are told to be faster than none if there are any.
   const CellSummary* best = nullptr;
-  /// The others without an error that cannot be told from it, the fastest first.
+  /// The others without an error that cannot be told from it, in the order of is_sooner().
   std::vector<const CellSummary*> undecided;
   /// The fastest that is nearly right, if it is faster than `best`, told apart; else null.
   const CellSummary* nearly_right = nullptr;
-  /// The fastest without an error of each family; of chains of several methods under "chain".
+  /// As `best`, of each family; of chains of several methods under "chain".
   std::map<std::string, const CellSummary*> families;
 
   /// Can the family's fastest not be told from `best`?

@@ -246,11 +246,12 @@ std::size_t SizeCurve::measured() const {
   return static_cast<std::size_t>(std::ranges::count_if(points, &SizePoint::was_measured));
 }
 
+bool SizeVerdict::was_measured() const {
+  return std::ranges::any_of(scenes, [](const SizeCurve& scene) { return scene.measured() > 1; });
+}
+
 bool SizeResult::was_measured() const {
-  return std::ranges::any_of(verdicts, [](const SizeVerdict& verdict) {
-    return std::ranges::any_of(verdict.scenes,
-                               [](const SizeCurve& scene) { return scene.measured() > 1; });
-  });
+  return std::ranges::any_of(verdicts, &SizeVerdict::was_measured);
 }
 
 bool SizeResult::is_complete() const {

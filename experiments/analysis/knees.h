@@ -60,7 +60,8 @@ struct SizeVerdict {
   std::vector<SizeCurve> scenes;  // as the sweep's blocks
   SizeCurve common;               // bytes, build_ms: sums; over, recall: means; cost: NaN
 
-  bool was_measured() const { return common.knee.has_value(); }
+  /// Are there at least two values on any of the scenes? One alone has nothing to be the knee of.
+  bool was_measured() const;
   /// May the default be the common knee, as far as the intervals tell?
   bool default_is_knee() const;
 };

@@ -24,4 +24,9 @@ std::string OwnPaths::resolved(const std::string& scene, const std::string& path
   return own == by_scene_.end() ? "" : own->second;
 }
 
+bool OwnPaths::is_on(const ResultCell& cell, const Block& block) const {
+  return cell.scene_source == block.scene &&
+         resolved(cell.scene_source, cell.path_source) == resolved(block.scene, block.path);
+}
+
 }  // namespace vislab

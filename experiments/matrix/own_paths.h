@@ -5,6 +5,8 @@
 #include <string>
 
 #include "common/scene/library.h"
+#include "experiments/matrix/matrix.h"
+#include "experiments/results/cell.h"
 
 namespace vislab {
 
@@ -18,6 +20,9 @@ class OwnPaths {
 
   /// `path`, or if it is empty the scene's own; "" if that is fitted to the scene.
   std::string resolved(const std::string& scene, const std::string& path) const;
+
+  /// Was the cell measured on the block's scene and path, by their names?
+  bool is_on(const ResultCell& cell, const Block& block) const;
 
  private:
   std::map<std::string, std::string> by_scene_;

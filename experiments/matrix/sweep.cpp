@@ -309,11 +309,18 @@ class SweepReader {
         return matches(expectation.culler, culler);
       });
       for (std::size_t i = 0; i < sweep_.methods.size(); ++i) {
-        if (!matches(expectation.culler, written_[i])) continue;
+        if (sweep_.methods[i].expectation || !matches(expectation.culler, written_[i])) continue;
         fits = true;
-        if (!sweep_.methods[i].expectation) sweep_.methods[i].expectation = expectation;
+        sweep_.methods[i].expectation = expectation;
       }
       if (!fits) {
+        const bool is_late = std::ranges::any_of(written_, [&](const std::string& culler) {
+          return matches(expectation.culler, culler);
+        });
+        if (is_late) {
+          throw InputError(place(file_, node) + ": patterns before it fit all that '" +
+                           expectation.culler + "' fits");
+        }
         throw InputError(
             place(file_, node) + ": " +
             unknown_name("pattern for an entry of cullers", expectation.culler, written_).what());

@@ -4,6 +4,7 @@
 //   images/HASH.ids    images of hidden-surface algorithms, compressed
 //   truth/KEY.truth    what rays saw, compressed
 //   verdicts/ID.json   what the judge made of a cell's sets; derived, may be deleted
+//   depths/ID.json     depth complexities that a report has counted; derived, may be deleted
 //   other_formats/N/   cells of format N that were measured again since
 //   matrices/NAME      says that the matrix was run, whole or in part (but not by --filter)
 //   stress/NAME/       what stress sweeps were asked, and which cells are theirs

@@ -130,7 +130,7 @@ std::string StoredPictures::write(const BlockSummary& block, const CellSummary& 
   const Verdict& shown = verdicts->frames[best];
   if (shown.false_px > 0 || shown.under_triangles_count == 0) return where;
   return where + ": no pixel is lost; what is culled though visible is seen between the pixels' " +
-         "centres only";
+         "centres, or where the judge excuses the pixel";
 }
 
 }  // namespace vislab

@@ -7,6 +7,7 @@
 
 #include "common/scene/error.h"
 #include "experiments/matrix/matrix.h"
+#include "experiments/matrix/own_paths.h"
 #include "experiments/results/files.h"
 #include "experiments/verbs/present_results.h"
 #include "experiments/verbs/table.h"
@@ -17,10 +18,10 @@ namespace {
 
 constexpr const char* matrix_name = "smoke";
 
-bool is_of(const ResultCell& cell, const Block& block) {
-  return cell.scene_source == block.scene && cell.path_source == block.path &&
-         cell.key.viewport == block.viewport && cell.key.device == block.device &&
-         cell.key.seed == block.seed && static_cast<int>(cell.frames.size()) == block.frames &&
+bool is_of(const ResultCell& cell, const Block& block, const OwnPaths& paths) {
+  return paths.is_on(cell, block) && cell.key.viewport == block.viewport &&
+         cell.key.device == block.device && cell.key.seed == block.seed &&
+         static_cast<int>(cell.frames.size()) == block.frames &&
          std::ranges::any_of(block.cullers, [&](const BlockCuller& culler) {
            return culler.chain == cell.key.chain && culler.replicate == cell.key.replicate;
          });
@@ -30,9 +31,10 @@ bool is_of(const ResultCell& cell, const Block& block) {
 std::vector<ResultCell> cells_of(const Matrix& matrix, const Lab& lab,
                                  const std::filesystem::path& results) {
   std::vector<ResultCell> cells;
+  const OwnPaths paths(lab.data);
   for (JudgedCell& judged : require_present_cells(results, lab.cullers)) {
     if (std::ranges::any_of(matrix.blocks,
-                            [&](const Block& block) { return is_of(judged.cell, block); })) {
+                            [&](const Block& block) { return is_of(judged.cell, block, paths); })) {
       cells.push_back(std::move(judged.cell));
     }
   }

@@ -30,7 +30,8 @@ struct PlannedGaps {
 };
 
 /// What the matrices that were `run`, by name, plan and `cells`, those that count, do not hold. A
-/// cell belongs to a planned block if scene, path, size, frames, device and seed are the same.
+/// cell belongs to a planned block if scene, path (OwnPaths), size, frames, device and seed are the
+/// same.
 PlannedGaps find_planned_gaps(const std::vector<Matrix>& matrices, const std::set<std::string>& run,
                               const std::vector<const ResultCell*>& cells, const Registry& cullers,
                               const OwnPaths& paths);

@@ -223,14 +223,11 @@ void print_results(const Lab& lab, const RunCall& call, const std::set<std::stri
 /// name is found out by the run.
 std::string status_of(const Block& block, const BlockCuller& culler,
                       const std::vector<JudgedCell>& stored, const OwnPaths& paths) {
-  const std::string path = paths.resolved(block.scene, block.path);
   for (const JudgedCell& judged : stored) {
     const ResultCell& cell = judged.cell;
     if (cell.key.chain != culler.chain || cell.key.replicate != culler.replicate ||
-        cell.scene_source != block.scene ||
-        paths.resolved(cell.scene_source, cell.path_source) != path ||
-        cell.key.viewport != block.viewport || cell.key.seed != block.seed ||
-        cell.key.threads != block.threads) {
+        !paths.is_on(cell, block) || cell.key.viewport != block.viewport ||
+        cell.key.seed != block.seed || cell.key.threads != block.threads) {
       continue;
     }
     // The run does not draw large scenes, and looks at few of their frames, whatever is asked.

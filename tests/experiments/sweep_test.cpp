@@ -199,6 +199,13 @@ TEST_F(SweepFileTest, TheFirstExpectationThatFitsACullerCounts) {
   EXPECT_FALSE(sweep.methods[2].expectation);
 }
 
+TEST_F(SweepFileTest, AnExpectationThatEarlierOnesLeaveNothingIsRefused) {
+  const std::string expect = "[[expect]]\nbreaks = \"never\"\nsource = \"s\"\nbecause = \"b\"\n";
+  const std::string text =
+      head + dial + scene + expect + "culler = \"*\"\n" + expect + "culler = \"frustum.*\"\n";
+  EXPECT_NE(refusal(text).find("patterns before it fit all"), std::string::npos) << refusal(text);
+}
+
 TEST_F(SweepFileTest, ErrorsAreOneLineThatNamesFilePlaceAndWhatWouldBeRight) {
   const auto expect = [&](const std::string& text, const std::vector<std::string>& words) {
     const std::string message = refusal(text);

@@ -47,6 +47,14 @@ TEST(Chart, TimesNearEachOtherStartAtZero) {
   EXPECT_LT(far.low, 0.1);
 }
 
+TEST(Chart, TicksOfSmallFiguresAreToldApart) {
+  std::set<std::string> labels;
+  const ChartAxis axis = positive_axis({2e-4, 2.5e-4});
+  for (const auto& [at, label] : axis.ticks) labels.insert(label);
+  EXPECT_EQ(labels.size(), axis.ticks.size());
+  EXPECT_TRUE(labels.contains("10⁻⁴")) << *labels.begin();
+}
+
 TEST(Chart, LabelsOfPointsInOnePlaceDoNotOverlap) {
   const std::vector<LabelRequest> requests(6, LabelRequest{50.0, 50.0, 12.0, 10.0});
   const ChartBox mark{45.0, 45.0, 55.0, 55.0};
