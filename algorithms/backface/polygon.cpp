@@ -25,8 +25,8 @@
 //   mesh, computed none, stored_normal 12 bytes a triangle, vertex_normals 12 bytes a vertex;
 //   instances share it.
 // Limits: of a solid from far away half of the faces, from near by more; nothing for meshes that
-//   are open or cross or touch themselves anywhere; does not see that objects hide each other. Short
-//   runs of kept triangles make long lists of ranges.
+//   are open or cross or touch themselves anywhere; does not see that objects hide each other.
+//   Short runs of kept triangles make long lists of ranges.
 // Sources: textbook chapter 17, Culling (in German), 17.1 (Hesse form; e = 0 is front; normals of
 //   vertices); Zachmann slides 7-10; Kowalka 2016, 2.2.2, eq. 2.1 (normal of a polygon).
 
