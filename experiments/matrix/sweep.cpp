@@ -305,26 +305,22 @@ class SweepReader {
     if (list == nullptr) return;
     for (const toml::node& node : *list) {
       const SweepExpectation expectation = read_expectation(*node.as_table(), sweep_.dial, file_);
-      bool fits = std::ranges::any_of(sweep_.absent, [&](const std::string& culler) {
+      const auto is_meant = [&](const std::string& culler) {
         return matches(expectation.culler, culler);
-      });
+      };
+      bool fits = std::ranges::any_of(sweep_.absent, is_meant);
       for (std::size_t i = 0; i < sweep_.methods.size(); ++i) {
-        if (sweep_.methods[i].expectation || !matches(expectation.culler, written_[i])) continue;
+        if (sweep_.methods[i].expectation || !is_meant(written_[i])) continue;
         fits = true;
         sweep_.methods[i].expectation = expectation;
       }
-      if (!fits) {
-        const bool is_late = std::ranges::any_of(written_, [&](const std::string& culler) {
-          return matches(expectation.culler, culler);
-        });
-        if (is_late) {
-          throw InputError(place(file_, node) + ": patterns before it fit all that '" +
-                           expectation.culler + "' fits");
-        }
-        throw InputError(
-            place(file_, node) + ": " +
-            unknown_name("pattern for an entry of cullers", expectation.culler, written_).what());
-      }
+      if (fits) continue;
+      const std::string what =
+          std::ranges::any_of(written_, is_meant)
+              ? "patterns before it fit all that '" + expectation.culler + "' fits"
+              : unknown_name("pattern for an entry of cullers", expectation.culler, written_)
+                    .what();
+      throw InputError(place(file_, node) + ": " + what);
     }
   }
 
